@@ -19,7 +19,7 @@
 #include "estimators/registry.h"
 #include "plan/make_plan.h"
 #include "relight/targets.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 #include "stopwatch.h"
 
 namespace ssdo {

@@ -15,10 +15,10 @@ namespace {
 
 /// Whether the setting's method takes an option as it was given.
 bool reaches(const std::vector<std::string>& option, const Setting& setting) {
-  const Takes& takes = setting.method->takes;
-  if (option[0] == "--thickness") return takes.thickness;
+  const SupportedOptions& supports = setting.method->supports;
+  if (option[0] == "--thickness") return supports.thickness;
   if (option[0] != "--radius") return true;
-  return option.back() == "inf" ? takes.endless_radius : takes.radius;
+  return option.back() == "inf" ? supports.infinite_radius : supports.radius;
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 
 /// The default of a parameter, or of the slices or steps of a method that marches.
 double default_of(const Method& method, std::string_view name) {
-  if (!method.takes.march) return find_parameter(method, name)->value;
+  if (!method.supports.march) return find_parameter(method, name)->value;
   return name == "slices" ? slices_of(Quality::standard) : steps_of(Quality::standard);
 }
 
@@ -36,7 +36,7 @@ std::string label_of(const Method& method, const Rung& rung) {
     const std::string_view unit = find_parameter(method, name)->unit;
     label += fmt::format("{}{} {}", label.empty() ? "" : ", ", value, unit.empty() ? name : unit);
   }
-  if (!method.takes.march) return label;
+  if (!method.supports.march) return label;
   for (const QualityLevel& level : kQualities) {
     if (rung.values == slices_and_steps(level.slices, level.steps).values)
       label += fmt::format(" ({})", level.name);
@@ -57,12 +57,12 @@ std::string Setting::name() const { return fmt::format("{} {}", method->name, ru
 ModelOptions Setting::applied_to(const ModelOptions& model) const {
   ModelOptions out = model;
   out.method = method->name;
-  const Takes& takes = method->takes;
-  if (!takes.thickness) out.thickness.reset();
-  if (!takes.radius || (!takes.endless_radius && out.radius && std::isinf(*out.radius)))
+  const SupportedOptions& supports = method->supports;
+  if (!supports.thickness) out.thickness.reset();
+  if (!supports.radius || (!supports.infinite_radius && out.radius && std::isinf(*out.radius)))
     out.radius.reset();
   for (const auto& [name, value] : rung.values) {
-    if (takes.march)
+    if (supports.march)
       (name == "slices" ? out.slices : out.steps) = value;
     else
       out.set.push_back(fmt::format("{}={}", name, value));
@@ -72,9 +72,9 @@ ModelOptions Setting::applied_to(const ModelOptions& model) const {
 
 std::vector<std::string> Setting::arguments() const {
   std::vector<std::string> words = {"--method", std::string(method->name)};
-  if (method->takes.prior) words.insert(words.end(), {"--prior", "rules"});
+  if (method->supports.prior) words.insert(words.end(), {"--prior", "rules"});
   for (const auto& [name, value] : rung.values) {
-    if (method->takes.march)
+    if (method->supports.march)
       words.insert(words.end(), {fmt::format("--{}", name), std::to_string(value)});
     else
       words.insert(words.end(), {"--set", fmt::format("{}={}", name, value)});

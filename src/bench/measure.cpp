@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "color/compose.h"
-#include "filters/shares.h"
+#include "filters/light_visibility.h"
 #include "relight/estimate.h"
 #include "stopwatch.h"
 
@@ -86,8 +86,8 @@ Measured measure(const Frame& frame, const Plan& plan, const Progress& progress)
     out.products =
         plan.method->estimate(frame.scene, plan.request, out.runs == 0 ? progress : Progress());
     estimates.push_back(watch.lap());
-    out.products = filter_shares(*plan.filter, std::move(out.products), frame.scene,
-                                 plan.method->pattern_size);
+    out.products = filter_visibility(*plan.filter, std::move(out.products), frame.scene,
+                                     plan.method->pattern_size);
     filters.push_back(watch.lap());
     spent += estimates.back().wall_ms + filters.back().wall_ms;
     ++out.runs;

@@ -87,7 +87,8 @@ void check_truth(const Truth& truth, const Subject& subject) {
 /// A method that needs everything a frame can provide, solids included.
 const Method& thorough_method() {
   const auto all = methods();
-  return *std::find_if(all.begin(), all.end(), [](const Method& m) { return m.takes.thickness; });
+  return *std::find_if(all.begin(), all.end(),
+                       [](const Method& m) { return m.supports.thickness; });
 }
 
 }  // namespace

@@ -243,7 +243,7 @@ void add_model(CLI::App& app, ModelOptions& o) {
   Text filter_list;
   for (const Filter& filter : filters())
     filter_list += fmt::format("\n{}: {}", filter.name, filter.summary);
-  filter_list += fmt::format("\n{}: that of the method's source, in its order", kSourceFilter);
+  filter_list += fmt::format("\n{}: that of the method's source, in its order", kPublishedFilter);
   group
       .text(
           "--filter", "NAME",

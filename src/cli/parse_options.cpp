@@ -19,7 +19,7 @@
 #include "error.h"
 #include "io/one_line.h"
 #include "io/sequence.h"
-#include "relight/idle_options.h"
+#include "relight/ineffective_options.h"
 
 namespace ssdo {
 namespace {
@@ -217,7 +217,7 @@ ParsedOptions parse_options(int argc, const char* const* argv) {
   const Purpose purpose = o.command == Command::relight                 ? Purpose::relight
                           : o.command == Command::bench && !of_sequence ? Purpose::bench
                                                                         : Purpose::other;
-  o.warnings = idle_options(given, o, purpose);
+  o.warnings = ineffective_options(given, o, purpose);
   return parsed;
 }
 

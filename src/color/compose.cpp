@@ -44,7 +44,7 @@
 #include "color/light_colors.h"
 #include "math/light_range.h"
 #include "parallel/tiles.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 
 namespace ssdo {
 namespace {
@@ -182,7 +182,7 @@ Plane<glm::vec3> hidden_light(const Results& r) {
   if (has_ambient && by_ao) hidden.add(ambient, nullptr);
   if (has_ambient && !by_ao && !has_lamps(r.scene.light)) hidden.add(ambient, &all);
   if (!has_lamps(r.scene.light)) return hidden.take();
-  const std::vector<NamedLight> lights = lights_of(r.scene.light);
+  const std::vector<LightGroup> lights = light_groups_of(r.scene.light);
   const std::vector<LightProducts>& found = r.shown().lights;
   for (std::size_t k = 0; k < lights.size() && k < found.size(); ++k) {
     const LitBy by{lights[k].light, found[k].direct};
@@ -294,7 +294,7 @@ std::vector<NamedChannels> light_channels(const std::string& name, const Results
   const Product& product = find_product(name);
   std::vector<NamedChannels> out;
   if (!product.by_light || !results.composition.per_light) return out;
-  const std::vector<NamedLight> lights = lights_of(results.scene.light);
+  const std::vector<LightGroup> lights = light_groups_of(results.scene.light);
   const std::vector<LightProducts>& found = results.shown().lights;
   for (std::size_t k = 0; k < lights.size(); ++k) {
     NamedChannels& channels = out.emplace_back(product.background);

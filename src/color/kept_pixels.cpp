@@ -6,7 +6,7 @@
 
 #include "color/light_colors.h"
 #include "parallel/tiles.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 
 namespace ssdo {
 namespace {
@@ -45,11 +45,11 @@ std::optional<Products> open_kept_pixels(const Products& found, const Scene& sce
   const Plane<float>& kept = gbuffer.masks.kept;
   if (kept.empty()) return std::nullopt;
   Products out = found;
-  out.shares = {};
+  out.visibility = {};
   open_light(out.direct, kept, scene, scene.light);
   open_bent(out.bent, kept, scene.geometry);
   mix(out.lit, kept, [&](std::size_t i) { return out.lit_without[i]; });
-  const std::vector<NamedLight> lights = lights_of(scene.light);
+  const std::vector<LightGroup> lights = light_groups_of(scene.light);
   for (std::size_t k = 0; k < out.lights.size() && k < lights.size(); ++k)
     open_light(out.lights[k].direct, kept, scene, lights[k].light);
   for_each_plane(

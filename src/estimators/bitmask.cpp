@@ -72,7 +72,7 @@
 #include "estimators/bitmask/raster.h"
 #include "estimators/bitmask/rays/find_reflection.h"
 #include "estimators/bitmask/rays/find_source.h"
-#include "estimators/bitmask/rays/own_blockers.h"
+#include "estimators/bitmask/rays/linked_occluders.h"
 #include "estimators/guessed.h"
 
 namespace ssdo {
@@ -86,13 +86,15 @@ class Bitmask {
         request_(request),
         progress_(progress),
         march_scene_(make_march_scene(scene.casters(), scene.solids, request.receivers,
-                                      scene.casting ? &scene.geometry : nullptr)),
+                                      scene.caster_surfaces ? &scene.geometry : nullptr)),
         layout_(march_scene_.layout),
         raster_(march_scene_),
-        far_(request.around_band && request.around_band->marches_on ? request.around_band->far.get()
-                                                                    : nullptr),
-        pattern_(pattern_of(request, layout_, scene.geometry.display, far_raster())),
-        bounce_pattern_(bounce_pattern_of(request, layout_, scene.geometry.display, far_raster())),
+        far_(request.around_band && request.around_band->continues_in_overview
+                 ? request.around_band->far.get()
+                 : nullptr),
+        pattern_(pattern_of(request, layout_, scene.geometry.display, overview_raster())),
+        bounce_pattern_(
+            bounce_pattern_of(request, layout_, scene.geometry.display, overview_raster())),
         other_views_(OtherViewRays::of_added(scene.other_surfaces)),
         march_(march_with(pattern_)),
         bounce_march_(march_with(bounce_pattern_)) {}
@@ -111,11 +113,11 @@ class Bitmask {
   }
 
   /// The data of this scene, an overview of a frame, that bands of the frame need.
-  FarScene overview(float from_px) {
+  OverviewScene overview(float from_px) {
     const MarchScene& s = march_scene_;
-    FarRaster raster(layout_.width(), layout_.height(), s.first_x, s.first_y, from_px);
+    OverviewRaster raster(layout_.width(), layout_.height(), s.first_x, s.first_y, from_px);
     kept_light_in_ = &raster;
-    std::vector<FarLight> kept;
+    std::vector<OverviewLight> kept;
     if (request_.products.bounce && request_.bounces > 0) {
       gather_light_from_outside();
       kept = gather_bounces(bounce_inputs()).kept;
@@ -124,14 +126,14 @@ class Bitmask {
     MarchPlanes planes = raster_.in_whole_rows(s, raster);
     std::vector<DepthBounds> bounds = depth_bounds(s);
     CutSurfaces cut = find_cut_surfaces(s, up_in_camera(scene_), request_.radius);
-    const Openness open = openness_of(s, scene_, request_.radius);
-    auto blockers = far_blockers(scene_, request_, raster);
+    const Enclosure open = enclosure_of(s, scene_, request_.radius);
+    auto blockers = overview_blockers(scene_, request_, raster);
     return {std::move(march_scene_), raster, std::move(planes), std::move(bounds),  scene_.solids,
             std::move(cut),          open,   std::move(kept),   std::move(blockers)};
   }
 
  private:
-  const FarRaster* far_raster() const { return far_ ? &far_->raster : nullptr; }
+  const OverviewRaster* overview_raster() const { return far_ ? &far_->raster : nullptr; }
 
   March march_with(const SlicePattern& pattern) const {
     return {march_scene_,
@@ -178,9 +180,9 @@ class Bitmask {
     if (asks) open_ao = InterleavedPlane(layout_), job.open_ao = &open_ao;
     std::vector<float> weights;
     if (wants_light()) {
-      out_.shares.are_ao = light.is_constant();
-      if (!out_.shares.are_ao) {
-        for (InterleavedShares& channel : sky_share_) channel = InterleavedShares(layout_);
+      out_.visibility.are_ao = light.is_constant();
+      if (!out_.visibility.are_ao) {
+        for (InterleavedRatios& channel : sky_share_) channel = InterleavedRatios(layout_);
         job.sky_share = &sky_share_;
       }
       if (light.order > 0 || request_.products.error) {
@@ -208,12 +210,12 @@ class Bitmask {
       return FoundVisibility{ao_[i], open_ao[i], {bent[0][i], bent[1][i], bent[2][i]}};
     };
     const bool sends = times_sent(scene_, request_) > 0 && scene_.senders.radiance.empty(),
-               has_suns = needs_openness(scene_, request_);
-    const LearnedVisibility learned =
-        request_.ask_prior({scene_, lit_part(), found, sends || has_suns,
-                            has_suns ? sun_past_beyond(march_scene_, scene_, request_) : 1});
+               has_suns = needs_enclosure(scene_, request_);
+    const LearnedVisibility learned = request_.ask_prior(
+        {scene_, lit_part(), found, sends || has_suns,
+         has_suns ? offscreen_sun_visibility(march_scene_, scene_, request_) : 1});
     if (sends) change_ = raster_.interleaved(learned.change);
-    if (has_suns) past_ = raster_.interleaved(learned.past);
+    if (has_suns) past_ = raster_.interleaved(learned.offscreen_sun);
   }
 
   /// The march of rays. In a band that marches on in an overview, the overview has the surfaces
@@ -238,14 +240,14 @@ class Bitmask {
     const std::vector<DepthBounds> bounds = depth_bounds(march_scene_);
     const March march = march_of_rays();
     const InterleavedPlane* const by_pixel = past_.data() ? &past_ : nullptr;
-    const float past = by_pixel ? 0 : sun_past_beyond(march_scene_, scene_, request_);
+    const float past = by_pixel ? 0 : offscreen_sun_visibility(march_scene_, scene_, request_);
     const bool unseen = times_sent(scene_, request_) > 0 && sends_two_sided(scene_);
     const auto rays = rays_to_source(request_.slices);
-    BlockersOfSources blockers(scene_, request_, pattern_);
+    LinkedOccludersOfSources blockers(scene_, request_, pattern_);
     for (std::size_t k = 0; k < scene_.light.sources.size(); ++k) {
       const Source& source = *scene_.light.sources[k];
-      const PassBeyond pass = pass_beyond(past, source);
-      const OwnBlockers* const own = blockers.of(k);
+      const OffscreenVisibility pass = offscreen_visibility(past, source);
+      const LinkedOccluders* const own = blockers.of(k);
       const auto job = [&](const std::vector<PointsOfSource>& points) -> SourceJob {
         if (own) return own->job(points, source);
         return {march, bounds, points, source, pass, by_pixel};
@@ -255,7 +257,7 @@ class Bitmask {
         return find_source(job(points), to, progress_);
       };
       sources_.push_back(find(lit_part(), RaySet::of_light));
-      if (unseen && source.near_lamp()) {
+      if (unseen && source.local_lamp()) {
         const auto points = points_of(source, rays, request_.seed, RaySet::of_light);
         find_unseen_light(job(points), march_scene_, lit_part(), sources_.back());
       }
@@ -272,8 +274,8 @@ class Bitmask {
     march_scene_.layers.front().thickness = {};
   }
 
-  const InterleavedColorShares* found_sky() const {
-    return out_.shares.are_ao ? nullptr : &sky_share_;
+  const InterleavedColorRatios* found_sky() const {
+    return out_.visibility.are_ao ? nullptr : &sky_share_;
   }
 
   /// Turns what was found into products, each in room that others have left. Sources go before the
@@ -284,33 +286,35 @@ class Bitmask {
       bounce = raster_.picture(std::move(light.bounce));
       if (light.emitted[0].data()) emitted = raster_.picture(std::move(light.emitted));
     };
-    if (request_.products.bounce) place(bounced.all, out_.bounce, out_.shares.emitted);
+    if (request_.products.bounce) place(bounced.all, out_.bounce, out_.visibility.emitted);
     out_.lights.resize(bounced.each.size());
-    out_.shares.sent = bounced.all.sent;
+    out_.visibility.sent = bounced.all.sent;
     for (std::size_t k = 0; k < bounced.each.size(); ++k) {
       place(bounced.each[k], out_.lights[k].bounce, out_.lights[k].emitted);
       out_.lights[k].sent = bounced.each[k].sent;
     }
     make_add_up(out_.lights, &LightProducts::bounce, out_.bounce);
-    make_add_up(out_.lights, &LightProducts::emitted, out_.shares.emitted);
-    if (wants_light() && !request_.shares_suffice) out_.direct = raster_.picture(direct_light());
+    make_add_up(out_.lights, &LightProducts::emitted, out_.visibility.emitted);
+    if (wants_light() && !request_.visibility_suffices)
+      out_.direct = raster_.picture(direct_light());
     if (request_.products.error) {
       const InterleavedPlane& more = bounced.error;
       const bool bounces = more.data() != nullptr;
       out_.error = raster_.of_receivers(
           0.0f, [&](std::ptrdiff_t i) { return bounces ? error_[i] + more[i] : error_[i]; });
     }
-    hand_out_sources(sources_, raster_, out_.shares.suns, out_.shares.draws);
-    hand_out_sources(sources_again_, raster_, out_.shares.suns_again, out_.shares.draws_again);
-    if (wants_light() && !out_.shares.are_ao)
-      out_.shares.sky = raster_.picture(std::move(sky_share_), ao_);
+    hand_out_sources(sources_, raster_, out_.visibility.sources, out_.visibility.samples);
+    hand_out_sources(sources_again_, raster_, out_.visibility.sources_again,
+                     out_.visibility.samples_again);
+    if (wants_light() && !out_.visibility.are_ao)
+      out_.visibility.sky = raster_.picture(std::move(sky_share_), ao_);
     out_.ao = raster_.picture(std::move(ao_), 1.0f);
   }
 
   InterleavedVectors direct_light() const {
     InterleavedVectors direct = raster_.make_color();
-    const NamedLight light = as_one_light(scene_.light);
-    const DirectJob job{march_scene_, shares_of(light, ao_, found_sky(), sources_), &direct};
+    const LightGroup light = as_one_group(scene_.light);
+    const DirectJob job{march_scene_, visibility_of(light, ao_, found_sky(), sources_), &direct};
     for_each_band_of(march_scene_.receivers, [&](const Window& part) { find_direct(job, part); },
                      {});
     return direct;
@@ -319,7 +323,7 @@ class Bitmask {
   void gather_reflection(const BouncedLight& bounce) {
     InterleavedVectors sent;
     if (mirrors_surfaces(scene_, request_))
-      sent = sent_light(bounce_inputs(), as_one_light(scene_.light), lit_part(),
+      sent = sent_light(bounce_inputs(), as_one_group(scene_.light), lit_part(),
                         bounce.bounce[0].data() ? &bounce : nullptr);
     find_reflection(
         {march_of_rays(), raster_, scene_, request_, sent, lit_part(), sends_two_sided(scene_)},
@@ -339,16 +343,16 @@ class Bitmask {
   MarchScene march_scene_;
   const Interleaving& layout_;
   const Raster raster_;
-  const FarScene* far_;  ///< where marches of a band go on; null: nowhere
+  const OverviewScene* far_;  ///< where marches of a band go on; null: nowhere
   SlicePattern pattern_, bounce_pattern_;
   std::unique_ptr<OtherViewRays> other_views_;  ///< null: there are no other views
   March march_, bounce_march_;
   CutSurfaces cut_;
   InterleavedPlane ao_, error_;
   InterleavedPlane change_, past_;    ///< as LearnedVisibility has them; empty: of no prior
-  InterleavedColorShares sky_share_;  ///< empty where that is ao
-  std::vector<SourceShares> sources_, sources_again_;  ///< by source
-  const FarRaster* kept_light_in_ = nullptr;           ///< order in which bands read what is sent
+  InterleavedColorRatios sky_share_;  ///< empty where that is ao
+  std::vector<SourceVisibility> sources_, sources_again_;  ///< by source
+  const OverviewRaster* kept_light_in_ = nullptr;  ///< order in which bands read what is sent
   Products out_;
 };
 
@@ -356,9 +360,9 @@ Products estimate(const Scene& scene, const Request& request, const Progress& pr
   return Bitmask(scene, request, progress).run();
 }
 
-std::shared_ptr<const FarScene> overview(const Scene& scene, const Request& request, float from_px,
-                                         const Progress& progress) {
-  return std::make_shared<FarScene>(Bitmask(scene, request, progress).overview(from_px));
+std::shared_ptr<const OverviewScene> overview(const Scene& scene, const Request& request,
+                                              float from_px, const Progress& progress) {
+  return std::make_shared<OverviewScene>(Bitmask(scene, request, progress).overview(from_px));
 }
 
 }  // namespace
@@ -375,18 +379,18 @@ Method bitmask_method() {
                    .reflection = true,
                    .error = true,
                    .guessed = true},
-      .takes = {.radius = true,
-                .endless_radius = true,
-                .thickness = true,
-                .march = true,
-                .receivers = true,
-                .prior = true},
+      .supports = {.radius = true,
+                   .infinite_radius = true,
+                   .thickness = true,
+                   .march = true,
+                   .receivers = true,
+                   .prior = true},
       .pattern_size = Interleaving::kPeriod,
-      .source_filter = {"geometry"},
+      .published_filter = {"geometry"},
       .parameters = {kRoughness, kIndexOfRefraction},
       .samples_per_pixel = [](const Request& r) { return 2 * r.slices * r.steps; },
       .estimate = estimate,
-      .bands = {overview, reach_rows, band_needs_openness, add_openness},
+      .bands = {overview, reach_rows, band_needs_enclosure, add_enclosure},
       .ladder = {.rungs = {slices_and_steps(1, 6), slices_and_steps(2, 8), slices_and_steps(2, 16),
                            slices_and_steps(2, 24), slices_and_steps(4, 32),
                            slices_and_steps(6, 48), slices_and_steps(12, 64)},

@@ -45,10 +45,11 @@ using MapFilter = std::function<Plane<float>(Plane<float> map, const Surfaces& g
 
 /// What a method keeps of an overview of a frame whose rows come one band after the other: each
 /// method that works on bands has its own.
-struct FarScene;
+struct OverviewScene;
 
-/// Sums over the pixels of a frame, from which sun_past_beyond() estimates how enclosed it is.
-struct Openness {
+/// Sums over the pixels of a frame, from which offscreen_sun_visibility() estimates how enclosed it
+/// is.
+struct Enclosure {
   double ao = 0, surfaces = 0;  ///< the ao of surfaces, and their number
   /// Sums of the squared sine of elevation over pixels above the horizon: those that show surfaces,
   /// and those that show sky.
@@ -59,11 +60,11 @@ struct Openness {
 
 /// What is known of a frame around a band of its rows.
 struct AroundBand {
-  std::shared_ptr<const FarScene> far;  ///< of the whole frame
-  bool marches_on = false;  ///< marches go on in `far` beyond `reach_rows`; false: nothing there
-                            ///< is within reach
-  int reach_rows = 0;       ///< rows above and below a pixel that may block its light
-  std::optional<Openness> openness = {};  ///< of the frame; not known: that of `far`
+  std::shared_ptr<const OverviewScene> far;  ///< of the whole frame
+  bool continues_in_overview = false;        ///< marches go on in `far` beyond `reach_rows`; false:
+                                             ///< nothing there is within reach
+  int reach_rows = 0;  ///< rows above and below a pixel that may block its light
+  std::optional<Enclosure> enclosure = {};  ///< of the frame; not known: that of `far`
 };
 
 /// What a method has found at a pixel: ao; `open_ao`, the ao if surfaces end at the border of the
@@ -76,7 +77,8 @@ struct FoundVisibility {
 /// What a learned prior says of the pixels of a geometry, for the light that they send.
 struct LearnedVisibility {
   Plane<float> change;  ///< of ao
-  Plane<float> past;    ///< share of a sun that comes past the border where nothing shown hides it
+  Plane<float>
+      offscreen_sun;  ///< share of a sun that comes past the border where nothing shown hides it
 };
 
 /// What a method asks a prior.
@@ -85,7 +87,8 @@ struct PriorQuestion {
   Window part;  ///< pixels that are asked about, counted from the first of the geometry
   std::function<FoundVisibility(std::size_t pixel)> found;  ///< by number in the geometry
   bool for_light;                                           ///< whether the answer is looked at
-  float sun_past;  ///< by rules: share of a sun that comes past the border where nothing hides it
+  float offscreen_sun;  ///< by rules: share of a sun that comes past the border where nothing hides
+                        ///< it
 };
 using AskPrior = std::function<LearnedVisibility(const PriorQuestion&)>;
 
@@ -105,8 +108,9 @@ struct Request {
   /// Filter between ao at half resolution and its upsampling, for methods that work so. May be
   /// empty.
   MapFilter filter_half = {};
-  bool shares_suffice = false;  ///< `direct` may stay empty where Products::shares make it up
-  AskPrior ask_prior = {};      ///< by methods that take it; empty: there is no prior
+  bool visibility_suffices =
+      false;                ///< `direct` may stay empty where Products::visibility make it up
+  AskPrior ask_prior = {};  ///< by methods that take it; empty: there is no prior
   /// Pixels that gather light: a part of the geometry's window. Products have the size of the part.
   /// All pixels of the geometry occlude and send light. Area 0: the whole window.
   Window receivers = {};
@@ -116,17 +120,17 @@ struct Request {
 };
 
 /// The options of the model that a method takes.
-struct Takes {
-  bool radius = false;          ///< --radius; without it, the method's sizes are its own
-  bool endless_radius = false;  ///< --radius inf; `auto` then means inf
-  bool thickness = false;       ///< --thickness: the method uses Scene::solids
-  bool march = false;           ///< --quality, --slices, --steps, --offscreen and --error
-  bool receivers = false;       ///< Request::receivers; without it, all pixels gather
-  bool prior = false;           ///< --prior learned: the method makes what that asks of it
+struct SupportedOptions {
+  bool radius = false;           ///< --radius; without it, the method's sizes are its own
+  bool infinite_radius = false;  ///< --radius inf; `auto` then means inf
+  bool thickness = false;        ///< --thickness: the method uses Scene::solids
+  bool march = false;            ///< --quality, --slices, --steps, --offscreen and --error
+  bool receivers = false;        ///< Request::receivers; without it, all pixels gather
+  bool prior = false;            ///< --prior learned: the method makes what that asks of it
 };
 
 /// The filter with which a method's source ends.
-struct SourceFilter {
+struct PublishedFilter {
   std::string_view name;  ///< of a row in the table of filters
   /// Whether it is Request::filter_half for these parameters; null: always after the estimate.
   bool (*at_half_resolution)(const ParameterValues&) = nullptr;
@@ -136,27 +140,27 @@ struct SourceFilter {
 struct BandSupport {
   /// Prepares an overview of the frame, in which marches of bands continue from `from_px` pixels of
   /// the frame on. Null: the method works on whole frames only.
-  std::shared_ptr<const FarScene> (*overview)(const Scene&, const Request&, float from_px,
-                                              const Progress&) = nullptr;
+  std::shared_ptr<const OverviewScene> (*overview)(const Scene&, const Request&, float from_px,
+                                                   const Progress&) = nullptr;
   /// How many rows above and below a pixel may hold what blocks its light within the radius, at
   /// most as many as the frame has. `some` pixels of the frame, rows or one of every `stride` x
   /// `stride`, tell how near its surfaces come.
   int (*reach_rows)(const Geometry& some, int stride, const Window& frame, const Window& display,
                     const Request&) = nullptr;
-  /// Whether light depends on the openness of the frame, more than Request::around_band tells.
-  bool (*needs_openness)(const Scene& overview, const Request&) = nullptr;
-  /// Adds the openness of the receivers in a band. If bands come from top to bottom, the sums have
+  /// Whether light depends on the enclosure of the frame, more than Request::around_band tells.
+  bool (*needs_enclosure)(const Scene& overview, const Request&) = nullptr;
+  /// Adds the enclosure of the receivers in a band. If bands come from top to bottom, the sums have
   /// the same bits as those of the frame in one piece.
-  void (*add_openness)(const Scene& band, const Request&, Openness&) = nullptr;
+  void (*add_enclosure)(const Scene& band, const Request&, Enclosure&) = nullptr;
 };
 
 /// A row in the table of methods.
 struct Method {
   std::string_view name, summary;
   ProductSet products;  ///< what it can make
-  Takes takes;
+  SupportedOptions supports;
   int pattern_size = 1;  ///< its noise repeats every pattern_size pixels
-  SourceFilter source_filter;
+  PublishedFilter published_filter;
   std::vector<Parameter> parameters = {};
   int (*samples_per_pixel)(const Request&) = nullptr;
   Products (*estimate)(const Scene&, const Request&, const Progress&) = nullptr;

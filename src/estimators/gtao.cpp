@@ -291,9 +291,9 @@ Method gtao_method() {
       .name = "gtao",
       .summary = "horizons in slices with the cosine, Jimenez et al. 2016",
       .products = {.ao = true, .direct = true, .bent = true, .reflection = true},
-      .takes = {.radius = true},
+      .supports = {.radius = true},
       .pattern_size = kPattern,
-      .source_filter = {"geometry"},
+      .published_filter = {"geometry"},
       .parameters =
           {
               {"slices", 2, 1, 64, "", "per pixel", true},

@@ -14,8 +14,8 @@
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/other_views/other_view_rays.h"
 #include "estimators/ray_start.h"
-#include "math/endless.h"
 #include "math/frame.h"
+#include "math/infinity.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
 #include "parallel/tiles.h"
@@ -135,7 +135,7 @@ class Guesses {
   /// Whether a pixel shows a surface that casts nothing: the view ray is free up to that surface,
   /// and no pixel shows what is behind it.
   bool is_hole(std::size_t pixel) const {
-    return scene_.casting && scene_.casting->hole[pixel] != 0;
+    return scene_.caster_surfaces && scene_.caster_surfaces->hole[pixel] != 0;
   }
 
   /// The surface at which the view ray of a pixel ends.

@@ -52,7 +52,7 @@ inline constexpr float kGuessBehindThings = 0.5f;
 inline constexpr int kGuessedPattern = 8;
 
 /// G of the pixels of `part`, 0..1; 0 where there is no surface. Pixels are numbered from the first
-/// of the geometry's window. `radius` in scene units, or infinity. filter_shares() makes the
+/// of the geometry's window. `radius` in scene units, or infinity. filter_visibility() makes the
 /// product from it.
 Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius, unsigned seed,
                             const Progress& progress);

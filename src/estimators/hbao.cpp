@@ -229,9 +229,9 @@ Method hbao_method() {
       .name = "hbao",
       .summary = "horizon-based ambient occlusion, four directions of taps in the picture",
       .products = {.ao = true, .direct = true},
-      .takes = {.radius = true},
+      .supports = {.radius = true},
       .pattern_size = TiledNoise::kSize,
-      .source_filter = {"normal"},
+      .published_filter = {"normal"},
       .parameters =
           {
               {"steps", 3, 1, 256, "", "taps in each of the four directions", true},

@@ -179,9 +179,9 @@ Method msvo_method() {
       .name = "msvo",
       .summary = "multi-scale volumetric obscurance, as in Unity, with sizes in pixels",
       .products = {.ao = true, .direct = true},
-      .takes = {},
+      .supports = {},
       .pattern_size = 1,
-      .source_filter = {"none"},
+      .published_filter = {"none"},
       .parameters =
           {
               {"intensity", 1, 0, 4, "", "gain of the obscurance"},

@@ -33,19 +33,20 @@ struct ProductSet {
 };
 
 /// Data about a sun's share that few rays have found, beside the share itself.
-struct ShadowDraw {
+struct ShadowSample {
   Plane<float> weight;    ///< in a mean: the mean cosine of the rays to the normal
   Plane<float> width_px;  ///< of the penumbra that the occluder throws here; 0: none
 };
 
 /// How much of the light arrives: what filters average in place of `direct` (filters/shares.h).
 /// About 0..1, but noise is not cut off, so that means are right.
-struct LightShares {
-  Plane<glm::vec3> sky;            ///< of what the sky gives, channel by channel
-  std::vector<Plane<float>> suns;  ///< of what each sun gives, as if its light met any normal
-  std::vector<ShadowDraw> draws;   ///< of each sun; empty where the shares are means of many rays
-  std::vector<Plane<float>> suns_again;  ///< `suns` by rays to other points, for the error
-  std::vector<ShadowDraw> draws_again;   ///< of suns_again; both empty: no error is wanted
+struct LightVisibility {
+  Plane<glm::vec3> sky;               ///< of what the sky gives, channel by channel
+  std::vector<Plane<float>> sources;  ///< of what each sun gives, as if its light met any normal
+  std::vector<ShadowSample>
+      samples;  ///< of each sun; empty where the shares are means of many rays
+  std::vector<Plane<float>> sources_again;  ///< `sources` by rays to other points, for the error
+  std::vector<ShadowSample> samples_again;  ///< of sources_again; both empty: no error is wanted
   /// The part of `bounce` that small bright senders give, which ao does not bound: filters average
   /// it apart. Empty: there is none.
   Plane<glm::vec3> emitted;
@@ -59,13 +60,13 @@ struct LightShares {
   std::shared_ptr<const MirrorModel> mirror = {};  ///< what `specular` is computed with
 };
 
-/// What one light of a frame gives: the environment or a lamp (scene/light/named_light.h). The sums
+/// What one light of a frame gives: the environment or a lamp (scene/light/light_group.h). The sums
 /// over the lights are `direct` and `bounce` of all of them.
 struct LightProducts {
   std::string name;
   Plane<glm::vec3> direct, bounce;  ///< empty where they were not asked for
-  Plane<glm::vec3> emitted;         ///< the part of its bounce that LightShares::emitted has
-  glm::vec3 sent{0};                ///< as LightShares has it
+  Plane<glm::vec3> emitted;         ///< the part of its bounce that LightVisibility::emitted has
+  glm::vec3 sent{0};                ///< as LightVisibility has it
 };
 
 /// Planes over the receivers of the request: those that were asked for, and others that the method
@@ -79,12 +80,12 @@ struct Products {
   /// radiance of the mirrored surfaces, 0 where none is mirrored.
   Plane<glm::vec3> specular;
   Plane<float> error;  ///< of the luminance of direct + bounce, with the sign of one draw of noise
-  Plane<float> guessed;  ///< G of estimators/guessed.h; the product once it is filtered
-  LightShares shares;    ///< what `direct` is made of, where the method knows
+  Plane<float> guessed;        ///< G of estimators/guessed.h; the product once it is filtered
+  LightVisibility visibility;  ///< what `direct` is made of, where the method knows
   /// The light with the objects of --shadow-of and without them, as relight/shadow_of.cpp has it.
   /// Empty: not asked for.
   Plane<glm::vec3> lit, lit_without;
-  std::vector<LightProducts> lights;  ///< in the order of lights_of(); empty: not asked for
+  std::vector<LightProducts> lights;  ///< in the order of light_groups_of(); empty: not asked for
 };
 
 /// What the values of a product are. It decides how --temporal and pictures treat them.
@@ -276,16 +277,16 @@ void for_each_plane(const Visit& visit, First& first, Others&... others) {
 /// then those by other points, then what is emitted, in all and by each light, then what is
 /// mirrored of the sky; some planes may be empty. `all` have as many as the first.
 template <class Visit, class First, class... Others>
-void for_each_share(const Visit& visit, First& first, Others&... others) {
-  visit(first.shares.sky, others.shares.sky...);
-  for (std::size_t i = 0; i < first.shares.suns.size(); ++i)
-    visit(first.shares.suns[i], others.shares.suns[i]...);
-  for (std::size_t i = 0; i < first.shares.suns_again.size(); ++i)
-    visit(first.shares.suns_again[i], others.shares.suns_again[i]...);
-  visit(first.shares.emitted, others.shares.emitted...);
+void for_each_visibility(const Visit& visit, First& first, Others&... others) {
+  visit(first.visibility.sky, others.visibility.sky...);
+  for (std::size_t i = 0; i < first.visibility.sources.size(); ++i)
+    visit(first.visibility.sources[i], others.visibility.sources[i]...);
+  for (std::size_t i = 0; i < first.visibility.sources_again.size(); ++i)
+    visit(first.visibility.sources_again[i], others.visibility.sources_again[i]...);
+  visit(first.visibility.emitted, others.visibility.emitted...);
   for (std::size_t k = 0; k < first.lights.size(); ++k)
     visit(first.lights[k].emitted, others.lights[k].emitted...);
-  visit(first.shares.mirrored_sky, others.shares.mirrored_sky...);
+  visit(first.visibility.mirrored_sky, others.visibility.mirrored_sky...);
 }
 
 }  // namespace ssdo

@@ -85,7 +85,7 @@ bool makes(const Method& method, const Product& product) {
   return contains(method.products, product.made_of);
 }
 
-bool takes_lamps(const Method& method) { return method.takes.thickness; }
+bool takes_lamps(const Method& method) { return method.supports.thickness; }
 
 const Parameter* find_parameter(const Method& method, std::string_view name) {
   for (const Parameter& parameter : method.parameters) {
@@ -135,8 +135,8 @@ std::string describe_methods() {
         products += (products.empty() ? "" : ", ") + std::string(product.name);
     }
     text += fmt::format("{}  {}\n  products: {}\n  source filter: {}{}\n", method.name,
-                        method.summary, products, method.source_filter.name,
-                        method.source_filter.at_half_resolution
+                        method.summary, products, method.published_filter.name,
+                        method.published_filter.at_half_resolution
                             ? ", on the map at half resolution before it goes up"
                             : "");
     for (const Parameter& p : method.parameters) {

@@ -193,9 +193,9 @@ Method sao_method() {
       .name = "sao",
       .summary = "scalable ambient obscurance, McGuire et al. 2012",
       .products = {.ao = true, .direct = true},
-      .takes = {.radius = true},
+      .supports = {.radius = true},
       .pattern_size = 4,
-      .source_filter = {"depth"},
+      .published_filter = {"depth"},
       .parameters =
           {
               {"samples", 11, 1, 1024, "", "taps per pixel", true},

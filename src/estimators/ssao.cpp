@@ -110,9 +110,9 @@ Method ssao_method() {
       .name = "ssao",
       .summary = "points in the normal's half-ball with a range check, Chapman 2013",
       .products = {.ao = true, .direct = true},
-      .takes = {.radius = true},
+      .supports = {.radius = true},
       .pattern_size = TiledNoise::kSize,
-      .source_filter = {"box"},
+      .published_filter = {"box"},
       .parameters =
           {
               {"samples", 64, 1, 1024, "", "points per pixel", true},

@@ -187,10 +187,12 @@ Method ssao_fade_method() {
       .name = "ssao-fade",
       .summary = "14 potential occluders with a linear fade at half resolution, Luna 2016",
       .products = {.ao = true, .direct = true},
-      .takes = {.radius = true},
+      .supports = {.radius = true},
       .pattern_size = 2 * TiledNoise::kSize,
-      .source_filter = {"gaussian",
-                        [](const ParameterValues& p) { return int(p.at("upsampling")) != kNone; }},
+      .published_filter = {"gaussian",
+                           [](const ParameterValues& p) {
+                             return int(p.at("upsampling")) != kNone;
+                           }},
       .parameters =
           {
               {"epsilon", 0.1, 0, 100, "radii",

@@ -110,9 +110,9 @@ Method ssao_range_method() {
       .name = "ssao-range",
       .summary = "points in the normal's half-ball against the pixel's own depth, hard range check",
       .products = {.ao = true, .direct = true},
-      .takes = {.radius = true},
+      .supports = {.radius = true},
       .pattern_size = TiledNoise::kSize,
-      .source_filter = {"normal"},
+      .published_filter = {"normal"},
       .parameters =
           {
               {"samples", 64, 1, 1024, "", "points per pixel", true},

@@ -259,9 +259,9 @@ Method ssdo_method() {
       .name = "ssdo",
       .summary = "directional occlusion and one bounce, Ritschel et al. 2009",
       .products = {.ao = true, .direct = true, .bounce = true},
-      .takes = {.radius = true},
+      .supports = {.radius = true},
       .pattern_size = kPatternSize,
-      .source_filter = {"geometry"},
+      .published_filter = {"geometry"},
       .parameters =
           {
               {"samples", 16, 1, 1024, "", "points per pixel", true},

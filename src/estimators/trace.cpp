@@ -53,12 +53,12 @@
 #include "estimators/trace/mirrored_sums.h"
 #include "estimators/trace/ray_origin.h"
 #include "estimators/trace/senders.h"
-#include "math/endless.h"
 #include "math/frame.h"
+#include "math/infinity.h"
 #include "math/luminance.h"
 #include "math/sampling.h"
 #include "math/sobol.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 #include "scene/light/source.h"
 #include "scene/normals/geometric_normal.h"
 #include "scene/normals/normals.h"
@@ -99,17 +99,18 @@ class Trace {
     if (request_.products.bent) out_.bent = Plane<glm::vec3>(width(), height(), glm::vec3(0));
     if (wants_light_) {
       out_.direct = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-      out_.shares.are_ao = scene_.light.is_constant();
-      if (!out_.shares.are_ao) out_.shares.sky = out_.direct;
-      out_.shares.suns.assign(scene_.light.sources.size(), Plane<float>(width(), height(), 0.0f));
+      out_.visibility.are_ao = scene_.light.is_constant();
+      if (!out_.visibility.are_ao) out_.visibility.sky = out_.direct;
+      out_.visibility.sources.assign(scene_.light.sources.size(),
+                                     Plane<float>(width(), height(), 0.0f));
     }
     if (request_.products.error) luminances_ = Plane<Groups>(width(), height(), Groups{});
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_visibility(pixel, p); });
     if (request_.products.bounce) {
       out_.bounce = Plane<glm::vec3>(width(), height(), glm::vec3(0));
-      senders_.push_back(senders_of(as_one_light(scene_.light)));
+      senders_.push_back(senders_of(as_one_group(scene_.light)));
       if (request_.by_light.bounce) {
-        for (NamedLight& light : lights_of(scene_.light))
+        for (LightGroup& light : light_groups_of(scene_.light))
           senders_.push_back(senders_of(std::move(light)));
         out_.lights.resize(senders_.size() - 1);
         for (LightProducts& light : out_.lights) light.bounce = out_.bounce;
@@ -214,11 +215,12 @@ class Trace {
   void gather_reflections() {
     if (request_.products.reflection) out_.reflection = Plane<float>(width(), height(), 1.0f);
     if (request_.products.specular) {
-      out_.shares.mirror = std::make_shared<const MirrorModel>(scene_, request_);
-      out_.specular = out_.shares.mirrored_sky = Plane<glm::vec3>(width(), height(), glm::vec3(0));
+      out_.visibility.mirror = std::make_shared<const MirrorModel>(scene_, request_);
+      out_.specular = out_.visibility.mirrored_sky =
+          Plane<glm::vec3>(width(), height(), glm::vec3(0));
       if (!scene_.senders.albedo.empty() || !scene_.senders.radiance.empty())
         find_senders(scene_, out_, out_.bounce.empty() ? out_.specular : out_.bounce,
-                     mirrored_.emplace(TraceSenders{as_one_light(scene_.light), {}, {}, {}}));
+                     mirrored_.emplace(TraceSenders{as_one_group(scene_.light), {}, {}, {}}));
     }
     for_each_surface([&](std::size_t pixel, const Receiver& p) { gather_reflection(pixel, p); });
   }
@@ -231,7 +233,7 @@ class Trace {
     const glm::vec3 viewer = direction_to_viewer(p.position, is_orthographic) * p.frame;
     const glm::mat3 to_world = glm::transpose(scene_.geometry.world_to_camera);
     MirroredSums sums;
-    if (request_.products.specular) sums.f0 = out_.shares.mirror->f0_at(scene_, pixel);
+    if (request_.products.specular) sums.f0 = out_.visibility.mirror->f0_at(scene_, pixel);
     for (int s = 0; s < samples_; ++s) {
       const FacetSample sample =
           mirror_at_facet(viewer, roughness, sobol_point(std::uint32_t(s), p.seed ^ kFacetSeed));
@@ -245,14 +247,14 @@ class Trace {
     }
     if (request_.products.reflection) out_.reflection[pixel] = sums.share();
     if (!request_.products.specular) return;
-    out_.shares.mirrored_sky[pixel] = sums.share_of_sky();
+    out_.visibility.mirrored_sky[pixel] = sums.share_of_sky();
     out_.specular[pixel] = sums.surfaces();
   }
 
   /// The radiance of the surface that a ray meets first; 0 if only other views show that surface.
   glm::vec3 sent_along(const Receiver& p, const glm::vec3& to) const {
     if (!mirrored_ || glm::dot(to, p.surface) <= 0) return {};
-    const std::optional<Met> met = occluders_.first_met({p.origin, to});
+    const std::optional<SurfaceHit> met = occluders_.first_hit({p.origin, to});
     return met && !met->other_view ? mirrored_->sent_by(*met, 0) : glm::vec3(0);
   }
 
@@ -261,12 +263,12 @@ class Trace {
     const glm::vec3 unoccluded = scene_.light.unoccluded_sky(p.normal);
     const glm::vec3 share = even ? glm::vec3(ao) : light.share_of_all(ao);
     out_.direct[pixel] = unoccluded * share;
-    if (!even) out_.shares.sky[pixel] = share;
+    if (!even) out_.visibility.sky[pixel] = share;
     Groups groups{};
     for (int g = 0; g < kGroups; ++g) groups[g] = luminance(unoccluded * light.share_of_group(g));
     for (std::size_t i = 0; i < scene_.light.sources.size(); ++i)
       out_.direct[pixel] += light_of(*scene_.light.sources[i], std::uint32_t(i), p, groups,
-                                     out_.shares.suns[i][pixel]);
+                                     out_.visibility.sources[i][pixel]);
     if (request_.products.error) luminances_[pixel] = groups;
   }
 
@@ -276,7 +278,8 @@ class Trace {
   /// the normal may come from a normal map, and filters use the share for neighbours.
   glm::vec3 light_of(const Source& source, std::uint32_t number, const Receiver& p, Groups& groups,
                      float& share) const {
-    const glm::vec3 unoccluded = source.taken_at(p.pixel) * source.unoccluded(p.position, p.normal);
+    const glm::vec3 unoccluded =
+        source.link_weight(p.pixel) * source.unoccluded(p.position, p.normal);
     if (unoccluded == glm::vec3(0)) {
       const SourceCone cone = source.cone(p.position);
       share = !is_blocked(p, number, cone.to, cone.distance);
@@ -300,7 +303,7 @@ class Trace {
     return unoccluded * share;
   }
 
-  TraceSenders senders_of(NamedLight light) const {
+  TraceSenders senders_of(LightGroup light) const {
     TraceSenders senders{std::move(light), {}, {}, {}};
     if (occluders_.has_other_views() && request_.bounces > 0)
       senders.others =
@@ -326,7 +329,7 @@ class Trace {
         const glm::vec3 to = direction(p, s);
         ++number[group_of(s)];
         if (glm::dot(to, p.surface) <= 0) continue;
-        const std::optional<Met> met = occluders_.first_met({p.origin, to});
+        const std::optional<SurfaceHit> met = occluders_.first_hit({p.origin, to});
         if (!met) continue;
         sums[group_of(s)] += senders_[0].sent_by(*met, pass);
         for (std::size_t k = 1; k < senders_.size(); ++k)
@@ -371,9 +374,9 @@ Method trace_method() {
                        .reflection = true,
                        .error = true,
                        .guessed = true},
-          .takes = {.radius = true, .endless_radius = true, .thickness = true},
+          .supports = {.radius = true, .infinite_radius = true, .thickness = true},
           .pattern_size = 1,
-          .source_filter = {"none"},
+          .published_filter = {"none"},
           .parameters = {{"samples", 64, kGroups, 65536, "rays", "per pixel and bounce", true},
                          kRoughness,
                          kIndexOfRefraction},

@@ -8,7 +8,7 @@
 
 #include "error.h"
 #include "estimators/embree.h"
-#include "math/endless.h"
+#include "math/infinity.h"
 
 namespace ssdo {
 namespace {
@@ -29,7 +29,8 @@ constexpr std::size_t kLarge = 8'000'000;
 /// Whether Embree can trace a ray: larger numbers make it end the process. Only positions far
 /// outside their pixels lead to these.
 bool is_traceable(const glm::vec3& v) {
-  return std::abs(v.x) < kEndless && std::abs(v.y) < kEndless && std::abs(v.z) < kEndless;
+  return std::abs(v.x) < kInfiniteLength && std::abs(v.y) < kInfiniteLength &&
+         std::abs(v.z) < kInfiniteLength;
 }
 
 RTCRay ray_of(const TriangleRays::Ray& from) {

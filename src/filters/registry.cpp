@@ -34,13 +34,13 @@ const Filter& find_filter(std::string_view name) {
     if (filter.name == name) return filter;
     names.emplace_back(filter.name);
   }
-  names.emplace_back(kSourceFilter);
+  names.emplace_back(kPublishedFilter);
   throw Error(ExitCode::usage, fmt::format("--filter {}: no such filter; {}there is {}", name,
                                            did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 const Filter& find_filter(std::string_view name, const Method& method) {
-  return find_filter(name == kSourceFilter ? method.source_filter.name : name);
+  return find_filter(name == kPublishedFilter ? method.published_filter.name : name);
 }
 
 Plane<float> apply_filter(const Filter& filter, Plane<float> noisy, const Filtering& filtering,

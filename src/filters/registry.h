@@ -23,7 +23,7 @@ struct Filter {
 };
 
 /// Stands for the filter with which the source of each method ends.
-inline constexpr std::string_view kSourceFilter = "source";
+inline constexpr std::string_view kPublishedFilter = "source";
 
 /// Every filter, in the order of --help.
 std::span<const Filter> filters();
@@ -31,7 +31,7 @@ std::span<const Filter> filters();
 /// Errors: ExitCode::usage with the names that exist.
 const Filter& find_filter(std::string_view name);
 
-/// The filter that a name, which may be kSourceFilter, means for a method. Errors: as above.
+/// The filter that a name, which may be kPublishedFilter, means for a method. Errors: as above.
 const Filter& find_filter(std::string_view name, const Method& method);
 
 /// Filters one plane alone.

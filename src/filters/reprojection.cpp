@@ -23,18 +23,12 @@ bool shows_same(const Surfel& q, const glm::dvec3& p, const glm::dvec3& normal, 
 
 Reprojection::Reprojection(const Geometry& before, const Geometry& now)
     : before_(before),
-      turn_(before.camera.rotation * glm::transpose(now.camera.rotation)),
-      step_(before.camera.rotation * (now.camera.origin - before.camera.origin)),
+      change_(now.camera, before.camera),
       pixel_size_(1 / before.camera.fx, 1 / before.camera.fy) {}
-
-glm::dvec2 Reprojection::place(const glm::vec3& position) const {
-  const glm::dvec3 p = turn_ * glm::dvec3(position) + step_;
-  return before_.camera.orthographic || p.z < 0 ? before_.camera.project(p) : glm::dvec2(NAN);
-}
 
 PixelsBefore Reprojection::find(const Surfel& surfel, const glm::dvec2& from_motion) const {
   PixelsBefore found;
-  const glm::dvec3 p = turn_ * glm::dvec3(surfel.position) + step_;
+  const glm::dvec3 p = change_.position(surfel.position);
   const glm::dvec2 still = place(surfel.position);
   const bool moves = std::isfinite(from_motion.x) && std::isfinite(from_motion.y);
   const double scale = before_.camera.orthographic ? 1.0 : -p.z,
@@ -46,7 +40,7 @@ PixelsBefore Reprojection::find(const Surfel& surfel, const glm::dvec2& from_mot
   const double left = std::floor(at.x), top = std::floor(at.y);
   const int width = before_.surfaces.width, height = before_.surfaces.height;
   if (!(left >= -1 && left < width && top >= -1 && top < height)) return found;
-  const glm::dvec3 normal = turn_ * glm::dvec3(surfel.normal);
+  const glm::dvec3 normal = change_.direction(surfel.normal);
   double sum = 0;
   bool through = true;
   for (int corner = 0; corner < 4; ++corner) {

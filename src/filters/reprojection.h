@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "scene/camera/camera_change.h"
 #include "scene/geometry.h"
 
 namespace ssdo {
@@ -25,8 +26,7 @@ struct PixelsBefore {
   SeenBefore sight = SeenBefore::nothing;  ///< `same` where there are pixels
 };
 
-/// Finds in the frame before what a pixel shows. Between the two camera spaces lies a rotation and
-/// the camera's own step, which stay exact however far away the world's origin is.
+/// Finds in the frame before what a pixel shows.
 class Reprojection {
  public:
   static constexpr double kSameNormal = 0.9;  ///< normals 26 degrees apart belong to two surfaces
@@ -37,11 +37,13 @@ class Reprojection {
   Reprojection(const Geometry& before, const Geometry& now);
 
   /// From the camera space of the frame before to the present one.
-  glm::mat3 to_present() const { return glm::mat3(glm::transpose(turn_)); }
+  glm::mat3 to_present() const { return glm::mat3(glm::transpose(change_.turn)); }
 
   /// Where the camera before saw a point of the present camera space, had the point not moved:
   /// pixels of the display window. Not finite where that camera looked away.
-  glm::dvec2 place(const glm::vec3& position) const;
+  glm::dvec2 place(const glm::vec3& position) const {
+    return change_.place(change_.position(position));
+  }
 
   /// `from_motion` is the pixel in the frame before according to a motion layer; not finite without
   /// one.
@@ -49,8 +51,7 @@ class Reprojection {
 
  private:
   const Geometry& before_;
-  const glm::dmat3 turn_;
-  const glm::dvec3 step_;
+  const CameraChange change_;
   const glm::dvec2 pixel_size_;  ///< at depth 1, or at any where the camera is orthographic
 };
 

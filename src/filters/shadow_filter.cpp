@@ -49,7 +49,7 @@ class ShadowTile {
       : half_(pattern_size / 2),
         most_(float(pattern_size)),
         tile_(tile),
-        rows_({view_of(noisy.share), view_of(noisy.draw.weight), view_of(noisy.draw.width_px)},
+        rows_({view_of(noisy.share), view_of(noisy.sample.weight), view_of(noisy.sample.width_px)},
               guide, tile, half_, window()),
         extremes_(zeros(2 * window() * rows_.stride())),
         likeness_(zeros(window() * window() * kLanes)),

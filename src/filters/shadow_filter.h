@@ -9,7 +9,7 @@ namespace ssdo {
 /// The share of a sun by one ray of each pixel.
 struct NoisyShadow {
   Plane<float> share;
-  ShadowDraw draw;
+  ShadowSample sample;
 };
 
 /// What the first pass leaves: the share, and W of shadow_filter.cpp in pixels, 0 where all

@@ -23,17 +23,17 @@ namespace ssdo {
 void add_sun_errors(Products& products, const Scene& scene) {
   if (products.error.empty()) return;
   const Surfaces& surfaces = scene.geometry.surfaces;
-  const LightShares& shares = products.shares;
-  for (std::size_t k = 0; k < shares.suns_again.size(); ++k) {
+  const LightVisibility& visibility = products.visibility;
+  for (std::size_t k = 0; k < visibility.sources_again.size(); ++k) {
     const Source& source = *scene.light.sources[k];
     const float light = luminance(source.irradiance) / std::sqrt(2.0f);
     for_each_row(surfaces.height, [&](int y) {
       for (int x = 0; x < surfaces.width; ++x) {
         const std::size_t i = surfaces.index(x, y);
-        const float one = std::clamp(shares.suns[k][i], 0.0f, 1.0f),
-                    other = std::clamp(shares.suns_again[k][i], 0.0f, 1.0f);
+        const float one = std::clamp(visibility.sources[k][i], 0.0f, 1.0f),
+                    other = std::clamp(visibility.sources_again[k][i], 0.0f, 1.0f);
         if (one == other || !surfaces[i].is_surface()) continue;
-        products.error[i] += light * source.taken_at(i) *
+        products.error[i] += light * source.link_weight(i) *
                              source.received(surfaces[i].position, surfaces[i].normal) *
                              (one - other);
       }

@@ -33,7 +33,7 @@
 #include "jobs/sequence/shot_report.h"
 #include "jobs/statistics.h"
 #include "jobs/work.h"
-#include "parallel/background.h"
+#include "parallel/background_task.h"
 #include "relight/frame.h"
 #include "relight/relight.h"
 #include "relight/targets.h"
@@ -97,7 +97,7 @@ class Batch {
       check_output(options_.verbosity.stats, policy_of_statistics(options_.output.policy));
     if (options_.command == Command::relight && !options_.verbosity.dry_run) clean_folders();
     for (std::size_t i = 0; i < jobs_.size() && !stopped_; ++i) {
-      if (options_.command == Command::info && !jobs_[i].is_lent)
+      if (options_.command == Command::info && !jobs_[i].has_no_outputs)
         info_.list(jobs_[i].views.front());
       if (!light_) read_light();
       run_job(i);
@@ -201,17 +201,17 @@ class Batch {
   /// Adds warnings of what differs from the frame before; frames are prepared one after the other.
   void note_changes(Work& work) {
     const Job& job = jobs_[work.index];
-    for (std::size_t v = 0; v < work.views.size() && !job.is_lent; ++v) {
+    for (std::size_t v = 0; v < work.views.size() && !job.has_no_outputs; ++v) {
       const Frame& frame = work.views[v].frame;
-      const FrameLooks looks = looks_of(frame, job.views[v], job.frame.value_or(0));
-      work.messages.warn(report_.add(work.index, looks), frame.view, true);
+      const FrameTraits traits = traits_of(frame, job.views[v], job.frame.value_or(0));
+      work.messages.warn(report_.add(work.index, traits), frame.view, true);
     }
   }
 
   /// Whether the outputs are there. Errors: those of check_output().
   bool may_skip(Work& work) const {
     const Job& job = jobs_[work.index];
-    if (job.is_lent) {
+    if (job.has_no_outputs) {
       if (!job.targets.empty() && (options_.verbosity.verbose || options_.verbosity.dry_run))
         work.messages.add(job.input() + kSkipped);
       return !shot_.is_wanted(work.index);
@@ -247,7 +247,7 @@ class Batch {
     TemporalInput temporal{std::move(before), {}};
     if (options_.model.temporal) place_in_sequence(frame, temporal, before_of(work.index));
     if (options_.command == Command::info || options_.verbosity.dry_run) note_losses(work, frame);
-    if (jobs_[work.index].is_lent) {
+    if (jobs_[work.index].has_no_outputs) {
       if (options_.command == Command::info) return;
       view.relit = relight(job_of(work, view), std::move(frame.scene), on_progress, temporal);
       return note_losses(work, frame);
@@ -312,7 +312,7 @@ class Batch {
   void conclude(Work& work) {
     for (const std::string& loss : work.losses) work.messages.add(loss + "; taken as background");
     if (!work.losses.empty() && code_ == ExitCode::done) code_ = ExitCode::input;
-    if (jobs_[work.index].is_lent) return conclude_lent(work);
+    if (jobs_[work.index].has_no_outputs) return conclude_without_outputs(work);
     if (!work.error && !work.advice.empty())
       work.messages.add(jobs_[work.index].input() + ": " + work.advice);
     print(work);
@@ -331,7 +331,7 @@ class Batch {
   }
 
   /// The frames around a lent frame do not fail if it does.
-  void conclude_lent(Work& work) {
+  void conclude_without_outputs(Work& work) {
     print(work);
     if (work.error)
       printer_.print(fmt::format("the frames around it do without it: {}", work.error->what()));
@@ -388,7 +388,7 @@ class Batch {
   std::vector<std::optional<History>> histories_;  ///< of the frame before's views, for --temporal
   std::optional<Work> ahead_;                      ///< the next job, prepared
   std::optional<Work> behind_;                     ///< computed and not concluded
-  Background beside_;                              ///< is waited for before any of the above goes
+  BackgroundTask beside_;                          ///< is waited for before any of the above goes
 };
 
 }  // namespace

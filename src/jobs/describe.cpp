@@ -80,7 +80,7 @@ std::string describe_layer(const Frame& frame, const Layer& layer) {
 bool is_in_camera_space(const Frame& frame) {
   if (frame.gbuffer.space) return *frame.gbuffer.space == Space::camera;
   const Placement& placement = frame.report.placement;
-  return placement.of_positions.is_camera_space(placement.median_depth);
+  return placement.position_camera.is_camera_space(placement.median_depth);
 }
 
 std::string_view space_of_positions(const Frame& frame) {
@@ -88,7 +88,7 @@ std::string_view space_of_positions(const Frame& frame) {
 }
 
 std::string_view handedness(const Frame& frame) {
-  return glm::determinant(frame.report.placement.of_positions.rotation) < 0 ? "left" : "right";
+  return glm::determinant(frame.report.placement.position_camera.rotation) < 0 ? "left" : "right";
 }
 
 std::string describe_positions(const Frame& frame) {

@@ -103,20 +103,21 @@ std::vector<Job> with_lent_frames(const RunOptions& options, std::vector<Job> jo
   std::map<int, Job> all;
   for (Job& job : jobs) {
     // Other frames may still want what this one finds.
-    job.is_lent = options.batch.skip_existing && is_done(job);
+    job.has_no_outputs = options.batch.skip_existing && is_done(job);
     all.emplace(*job.frame, std::move(job));
   }
   std::set<int> around;
   for (const auto& [frame, job] : all) {
-    if (job.is_lent) continue;
+    if (job.has_no_outputs) continue;
     for (const int other : frames_around(options.model.shot, frame)) around.insert(other);
   }
   for (const int frame : around) {
     if (all.contains(frame)) continue;
-    Job lent = job_of_frame(options, {}, frame);
-    lent.is_lent = true;
+    Job neighbour = job_of_frame(options, {}, frame);
+    neighbour.has_no_outputs = true;
     std::error_code ignored;
-    if (std::filesystem::exists(lent.input(), ignored)) all.emplace(frame, std::move(lent));
+    if (std::filesystem::exists(neighbour.input(), ignored))
+      all.emplace(frame, std::move(neighbour));
   }
   std::vector<Job> in_order;
   for (auto& [frame, job] : all) in_order.push_back(std::move(job));

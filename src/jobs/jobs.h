@@ -19,7 +19,8 @@ struct Job {
   std::optional<int> frame;
   std::vector<FrameFiles> views;  ///< those to relight, of one file; usually one
   std::vector<Target> targets;
-  bool is_lent = false;  ///< it makes nothing: only other frames of its shot want what it finds
+  bool has_no_outputs =
+      false;  ///< it makes nothing: only other frames of its shot want what it finds
 
   const std::string& input() const { return views.front().input; }
 };
@@ -30,8 +31,8 @@ struct Job {
 /// without frames; those of check_run_files, over all frames.
 std::vector<Job> plan_jobs(const RunOptions& options);
 
-/// The frames that tell a frame of a shot what they have found: those before it from the nearest on,
-/// itself, and those after it from the nearest on.
+/// The frames that tell a frame of a shot what they have found: those before it from the nearest
+/// on, itself, and those after it from the nearest on.
 std::vector<int> frames_around(const ShotWindow& shot, int frame);
 
 /// Refuses outputs that would replace a matte that a lamp is linked by: lamps are read after

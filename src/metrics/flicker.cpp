@@ -35,6 +35,7 @@
 #include <utility>
 
 #include "parallel/tiles.h"
+#include "scene/camera/camera_change.h"
 #include "scene/pixel_footprint.h"
 
 namespace ssdo {
@@ -74,11 +75,7 @@ struct Corners {
 class Search {
  public:
   Search(const Geometry& before, const Geometry& now)
-      : before_(before),
-        now_(now),
-        turn_(before.camera.rotation * glm::transpose(now.camera.rotation)),
-        step_(before.camera.rotation * (now.camera.origin - before.camera.origin)),
-        footprint_(before.camera) {}
+      : before_(before), now_(now), change_(now.camera, before.camera), footprint_(before.camera) {}
 
   /// Appends to `found` the point of pixel (x, y) of the present plane if the frame before shows
   /// it, and to `moved` whether `motion` contradicts the place that the cameras give.
@@ -86,7 +83,7 @@ class Search {
             std::vector<bool>& moved) const {
     const Surfel& surfel = now_.surfaces(x, y);
     if (!surfel.is_usable()) return;
-    const glm::dvec3 p = turn_ * glm::dvec3(surfel.position) + step_;
+    const glm::dvec3 p = change_.position(surfel.position);
     if (!(before_.camera.depth_of(p) > 0) && !before_.camera.orthographic) return;
     const glm::dvec2 place = before_.camera.project(p);
     const Window& window = before_.window;
@@ -114,7 +111,7 @@ class Search {
 
   /// Whether the pixels around the point show its surface at its present place.
   bool shows(const SharedPoint& point, const glm::dvec3& p, const Surfel& surfel) const {
-    const glm::dvec3 normal = turn_ * glm::dvec3(surfel.normal);
+    const glm::dvec3 normal = change_.direction(surfel.normal);
     const double width = footprint_.at(float(before_.camera.depth_of(p)));
     const Corners corners(point.across, point.down);
     double leaves = 0,
@@ -138,8 +135,7 @@ class Search {
 
   const Geometry& before_;
   const Geometry& now_;
-  const glm::dmat3 turn_;
-  const glm::dvec3 step_;
+  const CameraChange change_;
   const PixelFootprint footprint_;
 };
 

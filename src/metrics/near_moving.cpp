@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "parallel/tiles.h"
+#include "scene/camera/camera_change.h"
 
 namespace ssdo {
 namespace {
@@ -26,18 +27,15 @@ constexpr int kLeast = 4;
 /// From the camera space of one frame to the pixels of another.
 struct OtherFrame {
   OtherFrame(const Geometry& other, const Geometry& own)
-      : geometry(other),
-        turn(other.camera.rotation * glm::transpose(own.camera.rotation)),
-        step(other.camera.rotation * (own.camera.origin - other.camera.origin)) {}
+      : geometry(other), change(own.camera, other.camera) {}
 
   const Geometry& geometry;
-  glm::dmat3 turn;
-  glm::dvec3 step;
+  CameraChange change;
 
   /// Whether the other frame looks through the place of `surfel`, a point of the own frame.
   bool looks_through(const Surfel& surfel) const {
     if (!surfel.is_usable()) return false;
-    const glm::dvec3 p = turn * glm::dvec3(surfel.position) + step;
+    const glm::dvec3 p = change.position(surfel.position);
     if (!geometry.camera.orthographic && p.z >= 0) return false;
     const glm::dvec2 place = geometry.camera.project(p);
     const glm::dvec2 corner = glm::floor(place - 0.5), past = place - 0.5 - corner;
@@ -101,8 +99,7 @@ Plane<unsigned char> near_moving(const Geometry& before, const Geometry& now) {
   const OtherFrame frame(now, before);
   for (std::size_t i = 0; i < gone.size(); ++i) {
     if (!gone[i]) continue;
-    const glm::dvec2 place =
-        now.camera.project(frame.turn * glm::dvec3(before.surfaces[i].position) + frame.step);
+    const glm::dvec2 place = now.camera.project(frame.change.position(before.surfaces[i].position));
     near(int(std::floor(place.x)) - now.window.x0, int(std::floor(place.y)) - now.window.y0) = 1;
   }
   spread(near, near.height, near.width, near.width, 1);

@@ -11,7 +11,7 @@
 #include "io/images/image_file.h"
 #include "math/pixel_grid.h"
 #include "prior/prior.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 
 namespace ssdo {
 namespace {
@@ -29,7 +29,7 @@ constexpr double kBytesOfCasting = 60;
 
 /// Bytes per pixel for each scene of blockers that only some lamps have, and for the light without
 /// some objects together with the light it is compared with.
-constexpr double kBytesOfBlockers = 100, kBytesOfShadow = 150;
+constexpr double kBytesOfLinkedOccluders = 100, kBytesOfShadow = 150;
 
 /// What the learned prior adds: what it reads and changes of visibility, by pixel.
 constexpr double kBytesOfPrior = 32;
@@ -44,9 +44,9 @@ constexpr int kUsualSuns = 3;
 constexpr double kBytesOfBounce = 50, kBytesOfDirect = 14;
 
 /// How many scenes block the light of lamps; lamps may share a scene.
-std::size_t blockers_of(const Scene& scene) {
+std::size_t linked_occluders_of(const Scene& scene) {
   std::set<const Scene*> found;
-  for (const auto& [source, blockers] : scene.blockers) found.insert(blockers.get());
+  for (const auto& [source, blockers] : scene.linked_occluders) found.insert(blockers.get());
   return found.size();
 }
 
@@ -55,12 +55,13 @@ double bytes_per_pixel(const Plan& plan, const Scene& scene) {
   const ProductSet &products = request.products, &by_light = request.by_light;
   double bytes_of_light =
       kBytesOfBounce * int(by_light.bounce) + kBytesOfDirect * int(by_light.direct);
-  if (by_light != ProductSet()) bytes_of_light *= double(lights_of(scene.light).size());
+  if (by_light != ProductSet()) bytes_of_light *= double(light_groups_of(scene.light).size());
   return bytes_of_light + kBytesPerPixel + kBytesOfSun * double(scene.light.sources.size()) +
          kBytesOfSenders * int(!scene.senders.radiance.empty()) +
          kBytesOfPrior * int(plan.prior.has_value()) +
-         kBytesOfCasting * int(scene.casting.has_value()) +
-         kBytesOfBlockers * double(blockers_of(scene)) + kBytesOfShadow * int(bool(scene.without)) +
+         kBytesOfCasting * int(scene.caster_surfaces.has_value()) +
+         kBytesOfLinkedOccluders * double(linked_occluders_of(scene)) +
+         kBytesOfShadow * int(bool(scene.without)) +
          kBytesOfMore * (int(products.bent) + int(products.reflection)) +
          kBytesOfSpecular * int(products.specular);
 }
@@ -96,7 +97,7 @@ class Planner {
     if (rows_ >= height) return {height, height, height, 0, false};
     BandPlan bands = with_reach(exact_, false);
     for (const int reach : kMarches) {
-      if (bands.rows > 0 && (!bands.marches_on || bands.rows >= bands.halo_rows)) break;
+      if (bands.rows > 0 && (!bands.continues_in_overview || bands.rows >= bands.halo_rows)) break;
       bands = with_reach(reach, true);
     }
     return bands;
@@ -108,11 +109,11 @@ class Planner {
   }
 
  private:
-  BandPlan with_reach(int px, bool marches_on) const {
-    const int reach = marches_on ? px + kBeside : px;
+  BandPlan with_reach(int px, bool continues_in_overview) const {
+    const int reach = continues_in_overview ? px + kBeside : px;
     const int halo = halo_rows(plan_, reach),
               rows = std::max(0, rows_ - 2 * halo) / kRowsAtOnce * kRowsAtOnce;
-    return {rows, reach, px, halo, marches_on};
+    return {rows, reach, px, halo, continues_in_overview};
   }
 
   const Window& frame_;
@@ -197,7 +198,7 @@ std::string describe(const BandPlan& bands, const Window& frame) {
   std::string text =
       fmt::format("{} bands of {} rows, with {} above and below that their light comes from", count,
                   bands.rows, bands.halo_rows);
-  if (bands.marches_on)
+  if (bands.continues_in_overview)
     text += fmt::format("; beyond {} pixels marches go on in one pixel of {} x {}", bands.march_px,
                         kOverviewStride, kOverviewStride);
   return text;

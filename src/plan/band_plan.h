@@ -12,11 +12,11 @@ namespace ssdo {
 /// How a frame that does not fit into memory is cut into bands of rows. Each is read with the rows
 /// around it that its light comes from.
 struct BandPlan {
-  int rows = 0;             ///< that a band writes; the last may have fewer
-  int reach_rows = 0;       ///< above and below a pixel, that its marches in a band read
-  int march_px = 0;         ///< from a pixel, where its marches in a band end
-  int halo_rows = 0;        ///< that a band reads above and below those that it writes
-  bool marches_on = false;  ///< in an overview of the frame, beyond reach_rows
+  int rows = 0;                        ///< that a band writes; the last may have fewer
+  int reach_rows = 0;                  ///< above and below a pixel, that its marches in a band read
+  int march_px = 0;                    ///< from a pixel, where its marches in a band end
+  int halo_rows = 0;                   ///< that a band reads above and below those that it writes
+  bool continues_in_overview = false;  ///< in an overview of the frame, beyond reach_rows
 };
 
 /// How many pixels a frame may have that is computed as a whole in so many bytes of memory, lit by

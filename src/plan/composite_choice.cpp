@@ -8,7 +8,7 @@
 
 #include "error.h"
 #include "nearest_name.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 
 namespace ssdo {
 namespace {

@@ -16,7 +16,7 @@
 #include "plan/product_choice.h"
 #include "prior/prior.h"
 #include "scene/light/distant_source.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 #include "scene/solids/width_of_run.h"
 
 namespace ssdo {
@@ -40,15 +40,15 @@ struct OptionOfModel {
 
 /// A method has --slices and --steps where it marches, or as parameters of these names.
 void refuse_options(const Method& method, const ModelOptions& model) {
-  const Takes& takes = method.takes;
+  const SupportedOptions& supports = method.supports;
   const OptionOfModel options[] = {
-      {"--radius", model.radius.has_value(), takes.radius},
-      {"--thickness", model.thickness.has_value(), takes.thickness},
-      {"--slices", model.slices.has_value(), takes.march || find_parameter(method, "slices")},
-      {"--steps", model.steps.has_value(), takes.march || find_parameter(method, "steps")},
-      {"--error", model.error.has_value(), takes.march},
+      {"--radius", model.radius.has_value(), supports.radius},
+      {"--thickness", model.thickness.has_value(), supports.thickness},
+      {"--slices", model.slices.has_value(), supports.march || find_parameter(method, "slices")},
+      {"--steps", model.steps.has_value(), supports.march || find_parameter(method, "steps")},
+      {"--error", model.error.has_value(), supports.march},
       {"--prior learned, which corrects what method bitmask finds", model.prior == Prior::learned,
-       takes.prior}};
+       supports.prior}};
   for (const OptionOfModel& option : options) {
     if (option.given && !option.taken) {
       throw Error(ExitCode::usage,
@@ -87,8 +87,8 @@ void set_by_option(Plan& plan, const std::string& name, std::optional<int> value
 
 void choose_filter(Plan& plan, const std::string& name) {
   plan.filter = &find_filter(name, *plan.method);
-  if (name != kSourceFilter) return;
-  const SourceFilter& of_source = plan.method->source_filter;
+  if (name != kPublishedFilter) return;
+  const PublishedFilter& of_source = plan.method->published_filter;
   const bool half =
       of_source.at_half_resolution && of_source.at_half_resolution(plan.request.parameters);
   plan.reasons.push_back(fmt::format("filter {}: that of the method's source{}", plan.filter->name,
@@ -166,7 +166,7 @@ void explain_light(Plan& plan, const Light& light) {
         "{} gives {:.0f} % of the light that a surface facing it gets ({:.3g} of "
         "irradiance over pi), treated separately: spherical harmonics would hold {:.0f} "
         "% of it",
-        shape_of(*sun), 100 * sun->share, luminance(sun->irradiance), 100 * sun->held));
+        shape_of(*sun), 100 * sun->share, luminance(sun->irradiance), 100 * sun->sh_fraction));
   }
   if (has_lamps(light))
     plan.reasons.emplace_back(
@@ -181,16 +181,16 @@ void explain_light(Plan& plan, const Light& light) {
 }
 
 void choose_radius(Plan& plan, const ModelOptions& model, const Geometry& geometry) {
-  const Takes& takes = plan.method->takes;
-  if (!takes.radius) return;
+  const SupportedOptions& supports = plan.method->supports;
+  if (!supports.radius) return;
   if (model.radius) {
     plan.request.radius = float(*model.radius);
-    if (std::isinf(plan.request.radius) && !takes.endless_radius) {
+    if (std::isinf(plan.request.radius) && !supports.infinite_radius) {
       throw Error(ExitCode::usage,
                   fmt::format("--radius inf: method {} needs a limit", plan.method->name));
     }
     plan.reasons.push_back(fmt::format("radius {:.4g}: as given", plan.request.radius));
-  } else if (takes.endless_radius) {
+  } else if (supports.infinite_radius) {
     plan.request.radius = INFINITY;
     plan.reasons.push_back("radius inf: occluders at any distance count");
   } else {
@@ -230,7 +230,7 @@ void explain_measured(Plan& plan, const Scene& scene) {
 }
 
 void explain_thickness(Plan& plan, const ModelOptions& model) {
-  if (!plan.method->takes.thickness) return;
+  if (!plan.method->supports.thickness) return;
   plan.reasons.push_back(
       model.thickness
           ? fmt::format("thickness {:.4g}: as given", *model.thickness)
@@ -240,7 +240,7 @@ void explain_thickness(Plan& plan, const ModelOptions& model) {
 }
 
 void choose_march(Plan& plan, const ModelOptions& model) {
-  if (!plan.method->takes.march) return;
+  if (!plan.method->supports.march) return;
   plan.request.slices = model.slices.value_or(slices_of(model.quality));
   plan.request.steps = model.steps.value_or(steps_of(model.quality));
   plan.request.extend_offscreen = model.extend_offscreen;
@@ -273,7 +273,7 @@ void choose_receivers(Plan& plan, const OutputOptions& output, const Geometry& g
       fmt::format("writes {}x{} pixels of {}x{}: what lies beyond the display window blocks and "
                   "sends light, but is not written",
                   shown.width(), shown.height(), data.width(), data.height()));
-  if (!plan.method->takes.receivers || plan.temporal || plan.shot || plan.request.products.error)
+  if (!plan.method->supports.receivers || plan.temporal || plan.shot || plan.request.products.error)
     return;
   const int reach = plan.filter->reach + gbuffer.downsampling.reach() + reach_of_prior;
   plan.request.receivers =
@@ -297,12 +297,12 @@ void explain_downsampling(Plan& plan, const GBuffer& gbuffer) {
 Prior prior_of(const ModelOptions& model) {
   if (model.prior) return *model.prior;
   const bool is_told = !model.extend_offscreen || model.thickness;
-  return find_method(model.method).takes.prior && !is_told ? Prior::learned : Prior::rules;
+  return find_method(model.method).supports.prior && !is_told ? Prior::learned : Prior::rules;
 }
 
 bool finds_radius(const ModelOptions& model) {
-  const Takes& takes = find_method(model.method).takes;
-  return takes.radius && !takes.endless_radius && !model.radius;
+  const SupportedOptions& supports = find_method(model.method).supports;
+  return supports.radius && !supports.infinite_radius && !model.radius;
 }
 
 float radius_by_frame(const Geometry& geometry) {

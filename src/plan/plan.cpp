@@ -23,10 +23,10 @@ nlohmann::json to_json(const Plan& plan, const std::vector<std::string>& history
                       {"reasons", reasons}};
   if (contains(plan.make, "composite")) j["compose"] = name_of(plan.composition.compose);
   // JSON knows no infinity.
-  if (plan.method->takes.radius)
+  if (plan.method->supports.radius)
     j["radius"] = std::isinf(plan.request.radius) ? nlohmann::json("inf")
                                                   : nlohmann::json(plan.request.radius);
-  if (plan.method->takes.march) {
+  if (plan.method->supports.march) {
     j["slices"] = plan.request.slices;
     j["steps"] = plan.request.steps;
     j["prior"] = plan.prior ? "learned" : "rules";

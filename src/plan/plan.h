@@ -58,7 +58,7 @@ struct ModelOptions {
   int bounces = 1;                   ///< 0 to 8
   unsigned seed = 0;
   std::vector<std::string> set;     ///< NAME=VALUE of the method
-  std::string filter = "geometry";  ///< may be kSourceFilter
+  std::string filter = "geometry";  ///< may be kPublishedFilter
   bool temporal = false;            ///< frames of a sequence share what they find with later ones
   ShotWindow shot = {};             ///< frames that share what they find with each other
 };

@@ -12,7 +12,7 @@
 #include "estimators/registry.h"
 #include "io/images/image_file.h"
 #include "plan/composite_choice.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 
 namespace ssdo {
 namespace {
@@ -102,7 +102,7 @@ class ProductChoice {
                               file_));
     }
     Names names, products;
-    for (const NamedLight& light : lights_of(scene_.light)) {
+    for (const LightGroup& light : light_groups_of(scene_.light)) {
       if (contains(names, light.name) || (light.name == kEnvironmentName && !names.empty())) {
         throw Error(ExitCode::usage,
                     fmt::format("light '{}': the layers of {} have this name; give it another for "

@@ -59,10 +59,10 @@ glm::mat3 prior_axes(const std::optional<glm::vec3>& up) {
   return glm::transpose(glm::mat3(glm::cross(y, *up), y, *up));
 }
 
-PriorInputs::PriorInputs(const Squares& squares, const Geometry& geometry,
+PriorInputs::PriorInputs(const PriorGrid& grid, const Geometry& geometry,
                          const std::optional<glm::vec3>& up, float radius,
                          const PriorContext* of_frame)
-    : squares_(squares),
+    : grid_(grid),
       axes_(prior_axes(up)),
       orthographic_(geometry.camera.orthographic),
       pitch_(up ? -up->z : 0.0f),
@@ -84,30 +84,30 @@ void PriorInputs::find_log_depth(bool is_known) {
   const auto of = [&](const Surfel& s) {
     return orthographic_ ? -s.position.z / (4 * lens_) : 0.5f * std::log(-s.position.z);
   };
-  log_depth_ = Plane<float>(squares_.pixel.width, squares_.pixel.height, 0.0f);
+  log_depth_ = Plane<float>(grid_.pixel.width, grid_.pixel.height, 0.0f);
   double sum = 0, count = 0;
   for (int y = 0; y < log_depth_.height; ++y) {
     for (int x = 0; x < log_depth_.width; ++x) {
-      if (squares_.pixel(x, y) == kNoPixel) continue;
-      log_depth_(x, y) = of(squares_.surfaces(x, y));
-      if (squares_.covered(x, y) == 0 || !squares_.in_display(x, y)) continue;
+      if (grid_.pixel(x, y) == kNoPixel) continue;
+      log_depth_(x, y) = of(grid_.surfaces(x, y));
+      if (grid_.covered(x, y) == 0 || !grid_.in_display(x, y)) continue;
       sum += double(log_depth_(x, y)), count += 1;
     }
   }
   if (!is_known) context_.mean_log_depth = float(count > 0 ? sum / count : 0);
   const float mean = context_.mean_log_depth;
   for (std::size_t i = 0; i < log_depth_.size(); ++i) {
-    if (squares_.pixel[i] != kNoPixel)
+    if (grid_.pixel[i] != kNoPixel)
       log_depth_[i] = std::clamp(log_depth_[i] - mean, -kMostLogDepth, kMostLogDepth);
   }
 }
 
 PriorInputs::Values PriorInputs::values_of(int x, int y) const {
-  const std::size_t i = squares_.ao.index(x, y);
-  const glm::vec3 normal = axes_ * squares_.surfaces[i].normal, bent = axes_ * squares_.bent[i];
-  const float ao = squares_.ao[i], depth = log_depth_[i], guessed = squares_.guessed[i];
-  return {normal.x,      normal.y, normal.z, std::abs(normal.z),       depth,
-          depth * depth, ao,       guessed,  squares_.open_ao[i] - ao, bent.x,
+  const std::size_t i = grid_.ao.index(x, y);
+  const glm::vec3 normal = axes_ * grid_.surfaces[i].normal, bent = axes_ * grid_.bent[i];
+  const float ao = grid_.ao[i], depth = log_depth_[i], guessed = grid_.guessed[i];
+  return {normal.x,      normal.y, normal.z, std::abs(normal.z),    depth,
+          depth * depth, ao,       guessed,  grid_.open_ao[i] - ao, bent.x,
           bent.y,        bent.z,   ao * ao,  guessed * guessed};
 }
 
@@ -117,16 +117,16 @@ void PriorInputs::find_cells(double aspect) {
     double surfaces = 0, count = 0;
   };
   const double across = kCells * std::sqrt(aspect), down = kCells / std::sqrt(aspect);
-  const glm::ivec2 all = squares_.display;
+  const glm::ivec2 all = grid_.display;
   Plane<Sums> sums(count_of(across, 1, all.x), count_of(down, 1, all.y), Sums{});
   Sums frame;
-  for (int y = 0; y < squares_.pixel.height; ++y) {
-    for (int x = 0; x < squares_.pixel.width; ++x) {
-      if (!squares_.in_display(x, y)) continue;
-      Sums& cell = sums(cell_of(squares_.first.x + x, all.x, sums.width),
-                        cell_of(squares_.first.y + y, all.y, sums.height));
+  for (int y = 0; y < grid_.pixel.height; ++y) {
+    for (int x = 0; x < grid_.pixel.width; ++x) {
+      if (!grid_.in_display(x, y)) continue;
+      Sums& cell = sums(cell_of(grid_.first.x + x, all.x, sums.width),
+                        cell_of(grid_.first.y + y, all.y, sums.height));
       cell.count += 1, frame.count += 1;
-      if (squares_.covered(x, y) == 0) continue;
+      if (grid_.covered(x, y) == 0) continue;
       cell.surfaces += 1, frame.surfaces += 1;
       const Values values = values_of(x, y);
       for (std::size_t c = 0; c < values.size(); ++c)
@@ -220,15 +220,15 @@ void PriorInputs::share() {
 }
 
 void PriorInputs::write(int y, std::size_t stride, float* rows) const {
-  for (int x = 0; x < squares_.pixel.width; ++x) {
-    if (squares_.pixel(x, y) == kNoPixel) continue;
+  for (int x = 0; x < grid_.pixel.width; ++x) {
+    if (grid_.pixel(x, y) == kNoPixel) continue;
     float* to = rows + x;
     const auto put = [&](float value) { *to = value, to += stride; };
     const Values own = values_of(x, y);
-    const Surfel& s = squares_.surfaces(x, y);
+    const Surfel& s = grid_.surfaces(x, y);
     const float extent = orthographic_ ? lens_ : -s.position.z * lens_,
-                across = (float(squares_.first.x + x) + 0.5f) / float(squares_.display.x),
-                down = (float(squares_.first.y + y) + 0.5f) / float(squares_.display.y);
+                across = (float(grid_.first.x + x) + 0.5f) / float(grid_.display.x),
+                down = (float(grid_.first.y + y) + 0.5f) / float(grid_.display.y);
     const glm::vec3 normal(own[0], own[1], own[2]),
         view = axes_ * (orthographic_ ? glm::vec3(0, 0, -1) : glm::normalize(s.position));
     for (const PriorContext::Value c :

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "math/plane.h"
-#include "prior/squares.h"
+#include "prior/prior_grid.h"
 #include "scene/geometry.h"
 
 namespace ssdo {
@@ -72,7 +72,7 @@ class PriorInputs {
   /// `squares` with the means of what was found; `radius` in scene units, or infinity; `up` as
   /// prior_axes() has it. `of_frame`: the context of the frame, if the geometry is a band; null:
   /// found from the squares.
-  PriorInputs(const Squares& squares, const Geometry& geometry, const std::optional<glm::vec3>& up,
+  PriorInputs(const PriorGrid& grid, const Geometry& geometry, const std::optional<glm::vec3>& up,
               float radius, const PriorContext* of_frame = nullptr);
 
   const PriorContext& context() const { return context_; }
@@ -93,7 +93,7 @@ class PriorInputs {
   Values means(const Cell& cell) const;
   Cell look_up(const Plane<Cell>& cells, float across, float down) const;
 
-  const Squares& squares_;
+  const PriorGrid& grid_;
   glm::mat3 axes_;
   bool orthographic_;
   float lens_;  ///< geometric mean of half the width and half the height: slopes, or scene units

@@ -24,7 +24,7 @@ constexpr float kShiftUnit = 4, kMostShift = 12;
 
 /// Takes what was found at the pixels of the squares, and averages it as the geometry filter does,
 /// over patterns of 8 x 8 squares; guesses, of which a square has one ray, twice.
-void average_over_squares(const PriorQuestion& question, const PriorAsked& asked, Squares& s) {
+void average_over_squares(const PriorQuestion& question, const PriorSettings& asked, PriorGrid& s) {
   const Filter& filter = find_filter("geometry");
   s.guesses = guessed_shares(question.scene, s.pixel, s.first, asked.radius, asked.seed);
   s.ao = s.open_ao = Plane<float>(s.pixel.width, s.pixel.height, 0.0f);
@@ -77,43 +77,45 @@ float part_of_ao(const Geometry& geometry, float radius) {
   return 1 - (1 - kPartWithinRadius) / (1 + times * times);
 }
 
-PriorField find_prior(const PriorQuestion& question, const PriorAsked& asked) {
+PriorField find_prior(const PriorQuestion& question, const PriorSettings& asked) {
   const Geometry& geometry = question.scene.geometry;
   const std::optional<glm::vec3>& up = asked.up;
   PriorField field;
   field.part = part_of_ao(geometry, asked.radius);
-  Squares& squares = field.squares = make_squares(
-      geometry, question.part, question.scene.casting ? &*question.scene.casting : nullptr);
-  average_over_squares(question, asked, squares);
-  const PriorInputs inputs(squares, geometry, up, asked.radius, asked.of_frame);
+  PriorGrid& grid = field.grid =
+      make_prior_grid(geometry, question.part,
+                      question.scene.caster_surfaces ? &*question.scene.caster_surfaces : nullptr);
+  average_over_squares(question, asked, grid);
+  const PriorInputs inputs(grid, geometry, up, asked.radius, asked.of_frame);
   field.context = inputs.context();
   const Network& network = up ? prior_models().upright : prior_models().camera;
   const glm::mat3 from_axes = glm::transpose(prior_axes(up));
-  for (Plane<float>* plane : {&field.lean, &field.change, &field.past, &field.opens,
-                              &field.moment[0], &field.moment[1], &field.moment[2], &field.spread})
-    *plane = Plane<float>(squares.pixel.width, squares.pixel.height, 0.0f);
-  const std::size_t width = std::size_t(field.lean.width), stride = rounded_up(width);
+  for (Plane<float>* plane :
+       {&field.visibility_bias, &field.change, &field.offscreen_sun, &field.open_border_gain,
+        &field.moment[0], &field.moment[1], &field.moment[2], &field.spread})
+    *plane = Plane<float>(grid.pixel.width, grid.pixel.height, 0.0f);
+  const std::size_t width = std::size_t(field.visibility_bias.width), stride = rounded_up(width);
   // Some rows at a time: what all pixels have in common is added to the network once for each.
-  for_each_band(field.lean.height, [&](int y0, int y1) {
+  for_each_band(field.visibility_bias.height, [&](int y0, int y1) {
     std::vector<float> rows(PriorInputs::kOwn * stride), outputs(network.outputs() * stride);
     const NetworkWithShared told(network, inputs.shared());
     for (int y = y0; y < y1; ++y) {
       inputs.write(y, stride, rows.data());
       told.evaluate(rows.data(), stride, width, outputs.data());
       for (std::size_t x = 0; x < width; ++x) {
-        const std::size_t i = squares.pixel.index(int(x), y);
-        if (squares.pixel[i] == kNoPixel) continue;
+        const std::size_t i = grid.pixel.index(int(x), y);
+        if (grid.pixel[i] == kNoPixel) continue;
         const auto output = [&](int k) { return outputs[std::size_t(k) * stride + x]; };
-        const float ao = std::clamp(squares.ao[i], 0.0f, 1.0f), guessed = squares.guessed[i],
+        const float ao = std::clamp(grid.ao[i], 0.0f, 1.0f), guessed = grid.guessed[i],
                     room = std::min(ao + guessed, 1.0f) - std::max(ao - guessed, 0.0f);
         const float shift = std::clamp(kShiftUnit * output(0), -kMostShift, kMostShift);
-        field.lean[i] = sigmoid(shift) - 0.5f;
+        field.visibility_bias[i] = sigmoid(shift) - 0.5f;
         const float after = std::lerp(ao, leaned(ao, guessed, sigmoid(shift)), field.part);
         field.change[i] = after - ao;
-        const float open = (after + kLeastOpen) / (squares.open_ao[i] + kLeastOpen),
+        const float open = (after + kLeastOpen) / (grid.open_ao[i] + kLeastOpen),
                     closed = std::max(1 - open, 0.0f);
-        field.past[i] = 1 - closed * closed;
-        field.opens[i] = squares.open_ao[i] - squares.ao[i];
+        field.offscreen_sun[i] = 1 - closed * closed;
+        field.open_border_gain[i] = grid.open_ao[i] - grid.ao[i];
         const glm::vec3 change(output(1), output(2), output(3));
         const glm::vec3 moment = field.part * room * (from_axes * change);
         for (int c = 0; c < 3; ++c) field.moment[std::size_t(c)][i] = moment[c];
@@ -124,10 +126,10 @@ PriorField find_prior(const PriorQuestion& question, const PriorAsked& asked) {
   return field;
 }
 
-AskPrior ask_prior(const PriorAsked& asked, std::optional<PriorField>& field) {
+AskPrior ask_prior(const PriorSettings& asked, std::optional<PriorField>& field) {
   return [asked, &field](const PriorQuestion& question) {
     field = find_prior(question, asked);
-    return question.for_light ? by_pixel(*field, question.scene.geometry, question.sun_past)
+    return question.for_light ? by_pixel(*field, question.scene.geometry, question.offscreen_sun)
                               : LearnedVisibility();
   };
 }

@@ -46,7 +46,7 @@
 
 #include "estimators/estimator.h"
 #include "prior/inputs.h"
-#include "prior/squares.h"
+#include "prior/prior_grid.h"
 
 namespace ssdo {
 
@@ -71,20 +71,20 @@ float part_of_ao(const Geometry& geometry, float radius);
 
 /// What the prior says, by square.
 struct PriorField {
-  Squares squares;
-  Plane<float> lean;                   ///< u - 1/2; 0: as the rules say
+  PriorGrid grid;
+  Plane<float> visibility_bias;        ///< u - 1/2; 0: as the rules say
   Plane<float> change;                 ///< ao' - ao
-  Plane<float> past;                   ///< share of a sun, see by_pixel()
-  Plane<float> opens;                  ///< how much more is open if surfaces end at the border
+  Plane<float> offscreen_sun;          ///< share of a sun, see by_pixel()
+  Plane<float> open_border_gain;       ///< how much more is open if surfaces end at the border
   std::array<Plane<float>, 3> moment;  ///< x, y, z in camera space of m' - m
   Plane<float> spread;                 ///< expected |error| of ao'
-  float part;                          ///< the part of `lean` that ao takes; see part_of_ao()
-  PriorContext context;                ///< of the frame
+  float part;            ///< the part of `visibility_bias` that ao takes; see part_of_ao()
+  PriorContext context;  ///< of the frame
 };
 
 /// Selects the model, with a known direction `up`, unit, in camera space, or without; `radius` is
 /// in scene units, or infinity.
-struct PriorAsked {
+struct PriorSettings {
   std::optional<glm::vec3> up;
   float radius;
   unsigned seed;
@@ -92,19 +92,19 @@ struct PriorAsked {
 };
 
 /// Looks at the pixels of `question.part`.
-PriorField find_prior(const PriorQuestion& question, const PriorAsked& asked);
+PriorField find_prior(const PriorQuestion& question, const PriorSettings& asked);
 
 /// The field interpolated between squares, by pixel. The share of a sun that comes past the border
 /// is 1 - (1 - r)^2 where nothing shown hides the sun; r = ao' / ao with open borders is the open
 /// share of the directions that nothing shown hides. Error of the visibility of a sun in seven
-/// families of made scenes that the training never saw, over that with sun_past_beyond(): 0.98, in
-/// the worst of them 1.04. With 1 - (1 - r)^1.5 it is 0.96 (1.08), but a lit floor in an open set
-/// has 0.89 of its sun, for 0.95. The answer lies between that and `sun_past`, as PriorQuestion has
-/// it.
-LearnedVisibility by_pixel(const PriorField& field, const Geometry& geometry, float sun_past);
+/// families of made scenes that the training never saw, over that with offscreen_sun_visibility():
+/// 0.98, in the worst of them 1.04. With 1 - (1 - r)^1.5 it is 0.96 (1.08), but a lit floor in an
+/// open set has 0.89 of its sun, for 0.95. The answer lies between that and `offscreen_sun`, as
+/// PriorQuestion has it.
+LearnedVisibility by_pixel(const PriorField& field, const Geometry& geometry, float offscreen_sun);
 
 /// For Request: answers, and keeps in `field` what the prior said.
-AskPrior ask_prior(const PriorAsked& asked, std::optional<PriorField>& field);
+AskPrior ask_prior(const PriorSettings& asked, std::optional<PriorField>& field);
 
 /// Changes ao, the shares of the sky and the bounce after the filter, before light is made of them.
 void apply_prior(const PriorField& field, const Scene& scene, Products& products);

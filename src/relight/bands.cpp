@@ -14,8 +14,8 @@
 namespace ssdo {
 namespace {
 
-/// Shares of the whole time, for progress: reading the overview, and finding the frame's openness.
-constexpr double kOverviewShare = 0.02, kOpennessShare = 0.3;
+/// Shares of the whole time, for progress: reading the overview, and finding the frame's enclosure.
+constexpr double kOverviewShare = 0.02, kEnclosureShare = 0.3;
 
 /// `rows` of a channel over `window`.
 ChannelView rows_of(ChannelView pixels, const Window& window, const Window& rows) {
@@ -36,7 +36,7 @@ class BandJob {
 
   std::vector<std::unique_ptr<SafeFile>> run() {
     look_around();
-    if (needs_openness()) find_openness();
+    if (needs_enclosure()) find_enclosure();
     std::vector<std::unique_ptr<SafeFile>> files;
     for (const Target& target : job_.targets)
       files.push_back(std::make_unique<SafeFile>(target.path, job_.policy));
@@ -91,7 +91,7 @@ class BandJob {
     if (plan.prior) request.ask_prior = asking(overview, plan, found.prior, field);
     found.band = {plan.method->bands.overview(overview, request, float(bands_.march_px),
                                               [&](std::size_t, std::size_t) {}),
-                  bands_.marches_on, bands_.reach_rows};
+                  bands_.continues_in_overview, bands_.reach_rows};
     return found;
   }
 
@@ -101,7 +101,7 @@ class BandJob {
                   std::optional<PriorField>& field) const {
     Request request = plan.request;
     request.products = {.ao = true};
-    const PriorAsked asked{plan.prior->up, request.radius, request.seed};
+    const PriorSettings asked{plan.prior->up, request.radius, request.seed};
     request.ask_prior = ask_prior(asked, field);
     plan.method->estimate(overview, request, {});
     told.of_frame = std::make_shared<PriorContext>(std::move(field->context));
@@ -114,33 +114,33 @@ class BandJob {
     return number == 0 ? scene : *scene.without;
   }
 
-  bool needs_openness(std::size_t number) const {
+  bool needs_enclosure(std::size_t number) const {
     const Plan plan = around_[number].of_band(frame_.plan);
-    return !bands_.marches_on &&
-           plan.method->bands.needs_openness(scene_of(relit_.scene, number), plan.request);
+    return !bands_.continues_in_overview &&
+           plan.method->bands.needs_enclosure(scene_of(relit_.scene, number), plan.request);
   }
-  bool needs_openness() const {
+  bool needs_enclosure() const {
     for (std::size_t k = 0; k < around_.size(); ++k)
-      if (needs_openness(k)) return true;
+      if (needs_enclosure(k)) return true;
     return false;
   }
 
-  /// Finds the openness of the frame from all bands, which are read once more for it: the overview
+  /// Finds the enclosure of the frame from all bands, which are read once more for it: the overview
   /// does not give it to the bit.
-  void find_openness() {
-    std::vector<Openness> sums(around_.size());
+  void find_enclosure() {
+    std::vector<Enclosure> sums(around_.size());
     for_each_band([&](const Window& rows) {
       Band band = read(rows);
       Stopwatch watch;
       Request request = frame_.plan.request;
       request.receivers = rows;
       for (std::size_t k = 0; k < sums.size(); ++k)
-        frame_.plan.method->bands.add_openness(scene_of(band.scene, k), request, sums[k]);
+        frame_.plan.method->bands.add_enclosure(scene_of(band.scene, k), request, sums[k]);
       relit_.times.estimate += watch.lap();
-      on_progress_(kOverviewShare + kOpennessShare * double(rows.y1 - all_.y0) / all_.height());
+      on_progress_(kOverviewShare + kEnclosureShare * double(rows.y1 - all_.y0) / all_.height());
     });
-    for (std::size_t k = 0; k < sums.size(); ++k) around_[k].band.openness = sums[k];
-    begun_ += kOpennessShare;
+    for (std::size_t k = 0; k < sums.size(); ++k) around_[k].band.enclosure = sums[k];
+    begun_ += kEnclosureShare;
   }
 
   /// Calls `work(rows)` for the rows of each band.
@@ -156,7 +156,7 @@ class BandJob {
     Band band =
         read_band(job_, relit_.scene, with_rows_around(rows, bands_.halo_rows), relit_.times);
     int reach = bands_.reach_rows;
-    while (!bands_.marches_on) {
+    while (!bands_.continues_in_overview) {
       const int needed = frame_.plan.method->bands.reach_rows(
           band.scene.geometry, 1, all_, frame_.part().display_window, frame_.plan.request);
       if (needed <= reach) break;

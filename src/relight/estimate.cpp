@@ -25,10 +25,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/shares.h"
+#include "filters/light_visibility.h"
 #include "math/luminance.h"
 #include "prior/prior.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -62,9 +62,11 @@ Products over_geometry(Products found, const Geometry& geometry, const Window& r
   };
   for_each_plane([&](const Product& product, auto& plane) { place(plane, product.background); },
                  found);
-  for_each_share([&](auto& plane) { place(plane, 0); }, found);
-  for (ShadowDraw& draw : found.shares.draws) place(draw.weight, 0), place(draw.width_px, 0);
-  for (ShadowDraw& draw : found.shares.draws_again) place(draw.weight, 0), place(draw.width_px, 0);
+  for_each_visibility([&](auto& plane) { place(plane, 0); }, found);
+  for (ShadowSample& sample : found.visibility.samples)
+    place(sample.weight, 0), place(sample.width_px, 0);
+  for (ShadowSample& sample : found.visibility.samples_again)
+    place(sample.weight, 0), place(sample.width_px, 0);
   return found;
 }
 
@@ -85,7 +87,7 @@ Plane<float> size_of(Plane<float> draw, const Geometry& geometry) {
 /// directions about as evenly as all of their slices do. Measured with 2 to 24 slices on two
 /// frames, with the filter and without: the noise is 0.95 to 1.5 times the change by other seeds.
 void scale_to_noise(Plane<float>& difference, const Method& method) {
-  if (!method.takes.march) return;
+  if (!method.supports.march) return;
   for (float& e : difference.pixels) e /= std::sqrt(3.0f);
 }
 
@@ -118,7 +120,7 @@ struct Noisy {
 bool is_idle(const Request& request) { return request.products == ProductSet(); }
 
 /// Whether the light is known by its shares between the filter and light_products().
-bool has_shares(const Plan& plan) { return plan.filter->apply || plan.shot; }
+bool has_visibility(const Plan& plan) { return plan.filter->apply || plan.shot; }
 
 /// Completes the products of each light; those of a single light are those of all light.
 void finish_lights(const ProductSet& by_light, Products& products) {
@@ -136,9 +138,9 @@ class Round {
   Round(const Plan& plan, const Request& request, const Light& light,
         const std::function<void(double)>& on_progress)
       : plan_(plan), request_(request), on_progress_(on_progress) {
-    compares_steps_ = request.products.error && plan.method->takes.march;
+    compares_steps_ = request.products.error && plan.method->supports.march;
     if (request.by_light != ProductSet()) {
-      for (NamedLight& each : lights_of(light)) names_.push_back(std::move(each.name));
+      for (LightGroup& each : light_groups_of(light)) names_.push_back(std::move(each.name));
     }
     passes_ = (compares_steps_ ? 2.0 : 1.0) * (1.0 + request.bounces) +
               (bounces_by_light() ? double(names_.size()) * request.bounces : 0.0);
@@ -148,7 +150,7 @@ class Round {
     if (is_idle(request_)) return {};
     const auto progress = [this](std::size_t done, std::size_t count) { tell(done, count); };
     Request request = request_;
-    request.shares_suffice = plan_.filter->apply && !compares_steps_;
+    request.visibility_suffices = plan_.filter->apply && !compares_steps_;
     std::optional<PriorField> prior;
     if (plan_.prior) {
       request.ask_prior = asking(prior);
@@ -178,8 +180,8 @@ class Round {
     scale_to_noise(products.error, *plan_.method);
     std::function<void(Products&)> lean;
     if (noisy.prior) lean = [&](Products& found) { apply_prior(*noisy.prior, scene, found); };
-    products =
-        find_shares(*plan_.filter, std::move(products), scene, pattern, lean, has_shares(plan_));
+    products = find_visibility(*plan_.filter, std::move(products), scene, pattern, lean,
+                               has_visibility(plan_));
     if (noisy.prior) out.prior = std::move(noisy.prior);
     if (request_.products.error) {
       if (compares_steps_)
@@ -239,13 +241,14 @@ Scene seen_by_filters(Scene scene) {
 }
 
 /// The share of the light of a source that arrives at the surfaces of a frame.
-double arriving(const LightShares& shares, std::size_t source, const Surfaces& surfaces) {
-  const Plane<float>& share = shares.suns[source];
-  const bool weighs = source < shares.draws.size() && !shares.draws[source].weight.empty();
+double arriving(const LightVisibility& visibility, std::size_t source, const Surfaces& surfaces) {
+  const Plane<float>& share = visibility.sources[source];
+  const bool weighs =
+      source < visibility.samples.size() && !visibility.samples[source].weight.empty();
   double all = 0, arrives = 0;
   for (std::size_t i = 0; i < share.size(); ++i) {
     if (!surfaces[i].is_surface()) continue;
-    const double light = weighs ? double(shares.draws[source].weight[i]) : 1;
+    const double light = weighs ? double(visibility.samples[source].weight[i]) : 1;
     all += light, arrives += light * double(share[i]);
   }
   return all > 0 ? arrives / all : 1;
@@ -254,14 +257,14 @@ double arriving(const LightShares& shares, std::size_t source, const Surfaces& s
 /// The lamps that light next to nothing of what the frame shows, and the share of their light that
 /// arrives.
 std::vector<std::pair<std::string, double>> unlit_lamps(const Light& light,
-                                                        const LightShares& shares,
+                                                        const LightVisibility& visibility,
                                                         const Surfaces& surfaces) {
   // This much of the light of a lamp under the ground arrives, through gaps and at the border.
   constexpr double kNearlyNone = 0.03;
   std::vector<std::pair<std::string, double>> found;
-  for (std::size_t k = 0; k < shares.suns.size(); ++k) {
+  for (std::size_t k = 0; k < visibility.sources.size(); ++k) {
     const std::string& name = light.sources[k]->name;
-    const double share = name.empty() ? 1 : arriving(shares, k, surfaces);
+    const double share = name.empty() ? 1 : arriving(visibility, k, surfaces);
     if (share < kNearlyNone) found.emplace_back(name, share);
   }
   return found;
@@ -284,7 +287,7 @@ bool refine(Request& request, double wanted, const ErrorFound& found) {
 
 std::string describe(const ErrorFound& found, const Method& method, const Request& request) {
   std::string text = fmt::format("error of direct + bounce {:.2g}", found.all);
-  if (method.takes.march)
+  if (method.supports.march)
     text += fmt::format(": {:.2g} is the noise at {} slices, {:.2g} the bias of {} steps",
                         found.noise, request.slices, found.steps, request.steps);
   return text;
@@ -299,7 +302,7 @@ Estimate estimate(Scene scene, const Plan& plan, const std::function<void(double
     Stopwatch watch;
     Round round(plan, request, scene.light, on_progress);
     Noisy noisy = round.estimate(scene);
-    const auto unlit = unlit_lamps(scene.light, noisy.products.shares, scene.geometry.surfaces);
+    const auto unlit = unlit_lamps(scene.light, noisy.products.visibility, scene.geometry.surfaces);
     estimate_ms += watch.lap();
     // With --error another round may need all of the scene.
     if (!plan.error) scene = seen_by_filters(std::move(scene));
@@ -324,7 +327,7 @@ void light_products(Estimate& found, const Plan& plan, const TemporalInput& temp
   if (is_idle(found.request)) return;
   Stopwatch watch;
   Products& products = found.products;
-  products = light_of_shares(std::move(products), found.scene, has_shares(plan));
+  products = light_of_visibility(std::move(products), found.scene, has_visibility(plan));
   if (found.prior)
     finish_with_prior(*found.prior, found.scene, found.request.products.guessed, products);
   finish_lights(found.request.by_light, products);

@@ -37,8 +37,8 @@ struct StageTimes {
 
 /// What is known of a lamp beside its light.
 struct LampOfFrame {
-  std::string origin;       ///< Lamp::origin
-  bool is_near;             ///< it has a position
+  std::string given_by;     ///< Lamp::given_by
+  bool is_local;            ///< it has a position
   std::size_t source;       ///< its number in Light::sources
   Selection cast, receive;  ///< with files of this very frame
   /// Makes its source once more, for a band: the band sets what `receive` selects in its rows.

@@ -49,7 +49,7 @@ void add_lamps(Frame& frame, std::vector<Lamp> lamps, int number, bool allow_par
     source->receive = lamp.receive.text;
     frame.warn(warnings_of(lamp, *source, geometry));
     frame.lamps.emplace(lamp.name,
-                        LampOfFrame{lamp.origin, lamp.type != LampType::distant,
+                        LampOfFrame{lamp.given_by, lamp.type != LampType::distant,
                                     scene.light.sources.size(), lamp.cast, lamp.receive, make});
     scene.light.sources.push_back(source);
     names += (names.empty() ? "" : ", ") + lamp.name;

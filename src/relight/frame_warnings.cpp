@@ -12,10 +12,10 @@
 
 #include "io/exr/kept_channels.h"
 #include "io/pictures/transfer_curve.h"
-#include "relight/idle_options.h"
+#include "relight/ineffective_options.h"
 #include "scene/layers/advice.h"
 #include "scene/layers/windows.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 
 namespace ssdo {
 namespace {
@@ -110,7 +110,8 @@ void warn_of_encoded_colors(Frame& frame) {
 void warn_of_plan(Frame& frame, const FrameOptions& options, bool has_deep_pixels) {
   warn_of_missing_layers(frame, options.output);
   warn_of_radius(frame, options.model);
-  frame.warn(idle_options(options, {.plan = frame.plan,
+  frame.warn(
+      ineffective_options(options, {.plan = frame.plan,
                                     .depth = has_deep_pixels || frame.layers[Role::depth],
                                     .position = frame.layers[Role::position].has_value(),
                                     .normal = frame.layers[Role::normal].has_value(),

@@ -16,7 +16,7 @@
 #include "scene/other_views/back_faces.h"
 #include "scene/other_views/carve.h"
 #include "scene/other_views/registration.h"
-#include "scene/other_views/take_out.h"
+#include "scene/other_views/remove_objects.h"
 
 namespace ssdo {
 namespace {
@@ -117,16 +117,16 @@ void warn_of(const MergeCounts& view, std::vector<std::string>& warnings) {
 }
 
 /// Leaves out of a view what is marked, and what a lamp does not name.
-void take_out(OtherView& view, const TakenOut& out) {
-  const Plane<unsigned char>& taken = view.picture->taken;
+void remove_objects(OtherView& view, const ExcludedObjects& out) {
+  const Plane<unsigned char>& object_flags = view.picture->object_flags;
   const bool is_of_lamp = !out.cast.empty();
-  if (taken.empty() && !is_of_lamp) return;
+  if (object_flags.empty() && !is_of_lamp) return;
   const auto cast = view.picture->casts.find(out.cast);
   const bool names_any = cast != view.picture->casts.end();
   const unsigned char marks = out.marks_of(view);
   OtherPicture picture = *view.picture;
   for (std::size_t i = 0; i < picture.surfaces.size(); ++i) {
-    const bool is_marked = !taken.empty() && (taken[i] & marks) != 0,
+    const bool is_marked = !object_flags.empty() && (object_flags[i] & marks) != 0,
                is_named = !is_of_lamp || (names_any && cast->second[i] != 0);
     if (!is_marked && is_named) continue;
     // Its depth stays: up to there nothing is in the way, and what is behind it is not known.
@@ -218,7 +218,7 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
   KnownGeometry known;
   ViewReader reader(frame, options, pictures, known);
   for (const std::string& path : files.also) reader.add_also(path, files.links);
-  const bool uses_views = find_method(options.model.method).takes.thickness;
+  const bool uses_views = find_method(options.model.method).supports.thickness;
   if (uses_views && !files.view.empty()) reader.add_other_eye(files);
   if (own) known.deep.push_back(*own);
   return known;
@@ -227,21 +227,21 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
 std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
                                             const GBufferOptions& reading,
-                                            const TakenOut* taken_out) {
+                                            const ExcludedObjects* excluded) {
   std::vector<OtherView> backs;  // those of back faces, where something is taken out: they show
                                  // nothing that could stand in its place
-  if (taken_out) {
+  if (excluded) {
     register_views(known, scene.geometry, true);
     backs = split_back_faces(known.views, scene.geometry);
     for (std::vector<OtherView>* const views : {&known.views, &backs})
-      for (OtherView& view : *views) take_out(view, *taken_out);
-    scene.casting = take_out(scene.geometry, taken_out->coverage, taken_out->backdrop, known.views);
+      for (OtherView& view : *views) remove_objects(view, *excluded);
+    scene.caster_surfaces =
+        remove_objects(scene.geometry, excluded->coverage, excluded->backdrop, known.views);
   }
   const Geometry& casters = scene.casters();
   scene.solids = find_solids(casters, known.deep, thickness, reading, known.warnings);
-  std::vector<MergeCounts> of_backs = use_back_faces(taken_out ? backs : known.views, scene),
-                           counts;
-  if (!taken_out) register_views(known, scene.geometry);
+  std::vector<MergeCounts> of_backs = use_back_faces(excluded ? backs : known.views, scene), counts;
+  if (!excluded) register_views(known, scene.geometry);
   if (known.views.empty()) return of_backs;
   scene.other_surfaces = merge_views(known.views, casters, scene.senders.albedo, counts);
   std::vector<OtherView> of_scene;

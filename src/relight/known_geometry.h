@@ -31,10 +31,10 @@ KnownGeometry read_known_geometry(const Frame& frame, const FrameFiles& files,
                                   const std::optional<DeepImage>& own);
 
 /// Objects that cast nothing.
-struct TakenOut {
+struct ExcludedObjects {
   Plane<float> coverage;             ///< of the frame
   Plane<float> backdrop;             ///< 1 where it shows one; may be empty
-  unsigned char marks;               ///< OtherPicture::taken
+  unsigned char marks;               ///< OtherPicture::object_flags
   unsigned char marks_of_other_eye;  ///< the same of the other eye, which follows the frame's
                                      ///< answer about a backdrop
 
@@ -50,12 +50,12 @@ struct TakenOut {
 /// Fills the solids and the surfaces of other views of a scene: measured where deep images or other
 /// views show them, guessed elsewhere, or as thick as `thickness`. Returns what each view added,
 /// back faces last; the views of back faces are taken out of `known`. Warns of views of another
-/// scene, unit or axes. With `taken_out`, the surfaces that it covers in the frame, and those that
-/// it marks in OtherPicture::taken of the views, cast nothing. Errors: ExitCode::layer for a deep
-/// image of another frame.
+/// scene, unit or axes. With `excluded`, the surfaces that it covers in the frame, and those that
+/// it marks in OtherPicture::object_flags of the views, cast nothing. Errors: ExitCode::layer for a
+/// deep image of another frame.
 std::vector<MergeCounts> use_known_geometry(KnownGeometry& known, Scene& scene,
                                             std::optional<float> thickness,
                                             const GBufferOptions& reading,
-                                            const TakenOut* taken_out = nullptr);
+                                            const ExcludedObjects* excluded = nullptr);
 
 }  // namespace ssdo

@@ -14,11 +14,11 @@ namespace {
 
 /// The scene that holds only what is selected of the frame and the views, without `out`.
 std::shared_ptr<const Scene> selected_alone(Frame& frame, const KnownGeometry& known,
-                                            const Selection& selection, const TakenOut& out,
+                                            const Selection& selection, const ExcludedObjects& out,
                                             const SolidOptions& options) {
   const GBuffer& from = frame.gbuffer;
   std::vector<std::string> warnings;
-  TakenOut rest = out;
+  ExcludedObjects rest = out;
   rest.cast = selection.text;
   rest.coverage =
       all_but(selected_coverage(selection, frame.selections(warnings), from.window, from.grid),
@@ -69,14 +69,14 @@ Plane<float> all_but(const Plane<float>& selected, const Plane<float>& out, cons
   return rest;
 }
 
-void find_blockers(Frame& frame, const KnownGeometry& known, const TakenOut& out,
-                   const SolidOptions& options, Scene& scene) {
+void find_linked_occluders(Frame& frame, const KnownGeometry& known, const ExcludedObjects& out,
+                           const SolidOptions& options, Scene& scene) {
   std::map<std::string, std::shared_ptr<const Scene>> found;  // lamps share what they select alike
   for (const auto& [name, lamp] : frame.lamps) {
     if (lamp.cast.empty()) continue;
     std::shared_ptr<const Scene>& blockers = found[lamp.cast.text];
     if (!blockers) blockers = selected_alone(frame, known, lamp.cast, out, options);
-    scene.blockers[lamp.source] = blockers;
+    scene.linked_occluders[lamp.source] = blockers;
   }
 }
 

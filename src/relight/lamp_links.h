@@ -29,15 +29,15 @@ struct SolidOptions {
 /// What lamps are linked to, with files of the frame of this number.
 LampLinks links_of(const std::vector<Lamp>& lamps, int number);
 
-/// What does not block the light of a lamp, as TakenOut::coverage: the surfaces of a frame that its
-/// selection does not cover, and those of `out`, which may be empty.
+/// What does not block the light of a lamp, as ExcludedObjects::coverage: the surfaces of a frame
+/// that its selection does not cover, and those of `out`, which may be empty.
 Plane<float> all_but(const Plane<float>& selected, const Plane<float>& out, const Geometry& frame);
 
-/// Fills Scene::blockers of a scene of the frame: of what the frame and the views of `known` show,
-/// only what a lamp of Frame::lamps selects is kept, without `out`. Edges between selected objects
-/// and background are kept. Surfaces behind the rest are found as behind objects that cast nothing.
-/// Errors: those of selected_coverage().
-void find_blockers(Frame& frame, const KnownGeometry& known, const TakenOut& out,
-                   const SolidOptions& options, Scene& scene);
+/// Fills Scene::linked_occluders of a scene of the frame: of what the frame and the views of
+/// `known` show, only what a lamp of Frame::lamps selects is kept, without `out`. Edges between
+/// selected objects and background are kept. Surfaces behind the rest are found as behind objects
+/// that cast nothing. Errors: those of selected_coverage().
+void find_linked_occluders(Frame& frame, const KnownGeometry& known, const ExcludedObjects& out,
+                           const SolidOptions& options, Scene& scene);
 
 }  // namespace ssdo

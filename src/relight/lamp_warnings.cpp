@@ -61,7 +61,7 @@ double behind_surface(const glm::dvec3& center, const Geometry& geometry) {
 std::vector<std::string> warnings_of(const Lamp& lamp, const Source& source,
                                      const Geometry& geometry) {
   std::vector<std::string> lines;
-  const auto warn = [&](const std::string& what) { lines.push_back(lamp.origin + ": " + what); };
+  const auto warn = [&](const std::string& what) { lines.push_back(lamp.given_by + ": " + what); };
   if (std::max({source.irradiance.x, source.irradiance.y, source.irradiance.z}) <= 0) {
     warn(fmt::format("{}: it gives no light",
                      lamp.intensity == 0 ? "intensity is 0"

@@ -12,7 +12,7 @@
 #include "scene/layers/groups.h"
 #include "scene/layers/names.h"
 #include "scene/layers/windows.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 
 namespace ssdo {
 namespace {
@@ -32,7 +32,7 @@ void check_bands(const Frame& frame) {
 /// In a part with several views, "direct.right.R" is the right view's light of all.
 void check_names_of_lights(const Frame& frame) {
   const std::vector<std::string> views = views_of(group_channels(frame.files.front(), 0));
-  for (const NamedLight& light : lights_of(frame.scene.light)) {
+  for (const LightGroup& light : light_groups_of(frame.scene.light)) {
     const auto is_name = [&](const std::string& view) { return lower(view) == lower(light.name); };
     if (std::ranges::none_of(views, is_name)) continue;
     throw Error(ExitCode::usage,

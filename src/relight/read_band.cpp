@@ -11,7 +11,7 @@
 #include "scene/build_geometry.h"
 #include "scene/objects/read_object_masks.h"
 #include "scene/objects/selected_coverage.h"
-#include "scene/other_views/take_out.h"
+#include "scene/other_views/remove_objects.h"
 #include "stopwatch.h"
 
 namespace ssdo {
@@ -51,24 +51,26 @@ class CastersOfBand {
   /// Fills a scene without `out`, and the blockers of linked lamps.
   void fill(Scene& scene, const Plane<float>& out, const Scene& overview) const {
     take_out_of(scene, out, overview);
-    std::map<std::string, std::shared_ptr<const Scene>> found;  // as find_blockers() shares them
+    std::map<std::string, std::shared_ptr<const Scene>>
+        found;  // as find_linked_occluders() shares them
     for (const auto& [name, lamp] : frame_.lamps) {
       if (lamp.cast.empty()) continue;
       std::shared_ptr<const Scene>& blockers = found[lamp.cast.text];
       if (!blockers) {
         auto selected = std::make_shared<Scene>();
         take_out_of(*selected, all_but(coverage_of(lamp.cast), out, rows_),
-                    *overview.blockers.at(lamp.source));
+                    *overview.linked_occluders.at(lamp.source));
         blockers = std::move(selected);
       }
-      scene.blockers[lamp.source] = blockers;
+      scene.linked_occluders[lamp.source] = blockers;
     }
   }
 
   void take_out_of(Scene& scene, const Plane<float>& out, const Scene& overview) const {
-    if (overview.casting)
-      scene.casting = take_out(rows_, out, backdrop_, {}, &overview.casting->geometry);
-    const Geometry& casters = scene.casting ? scene.casting->geometry : rows_;
+    if (overview.caster_surfaces)
+      scene.caster_surfaces =
+          remove_objects(rows_, out, backdrop_, {}, &overview.caster_surfaces->geometry);
+    const Geometry& casters = scene.caster_surfaces ? scene.caster_surfaces->geometry : rows_;
     scene.solids = model_.thickness
                        ? constant_thickness(casters, float(*model_.thickness))
                        : guess_solids(casters, SolidsOfOverview{overview.casters(),

@@ -47,7 +47,7 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
     throw Error(ExitCode::usage, fmt::format("{}: {}: {}", frame.input, selection.option, why));
   };
   if (which.empty()) return;
-  if (!find_method(options.model.method).takes.thickness)
+  if (!find_method(options.model.method).supports.thickness)
     refuse(fmt::format("method {} casts with all that is seen; take bitmask or trace",
                        options.model.method),
            which);
@@ -59,8 +59,9 @@ void refuse_objects(const Frame& frame, const KnownGeometry& known, const FrameO
 
 /// A backdrop that casts nothing.
 struct BackdropOut {
-  Plane<float> coverage;                   ///< empty: there is none
-  unsigned char of_other_eye = kBackdrop;  ///< the bits of OtherPicture::taken that it has there
+  Plane<float> coverage;  ///< empty: there is none
+  unsigned char of_other_eye =
+      kBackdrop;  ///< the bits of OtherPicture::object_flags that it has there
 };
 
 /// The backdrop that is left out of what casts, with a warning.
@@ -93,18 +94,18 @@ BackdropOut find_backdrop(Frame& frame, const FrameOptions& options, bool may_le
 }
 
 /// Whether another view shows a backdrop that is to cast nothing.
-bool shows_backdrop(const std::vector<OtherView>& views, const TakenOut& out) {
+bool shows_backdrop(const std::vector<OtherView>& views, const ExcludedObjects& out) {
   return std::ranges::any_of(views, [&](const OtherView& view) {
     const unsigned char marks = out.marks_of(view) & (kBackdrop | kNearBackdrop);
-    return std::ranges::any_of(view.picture->taken.pixels,
-                               [&](unsigned char taken) { return taken & marks; });
+    return std::ranges::any_of(view.picture->object_flags.pixels,
+                               [&](unsigned char flags) { return flags & marks; });
   });
 }
 
 /// Finds the solids behind the surfaces, and takes what other views add.
 void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& options) {
   refuse_objects(frame, known, options);
-  const bool sees_behind = find_method(options.model.method).takes.thickness;
+  const bool sees_behind = find_method(options.model.method).supports.thickness;
   // Deep samples do not say what they are of.
   const bool may_leave_out = sees_behind && known.deep.empty();
   const auto [backdrop, of_other_eye] = find_backdrop(frame, options, may_leave_out);
@@ -121,15 +122,15 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
       frame.warn(warnings);
       return found;
     };
-    TakenOut out{
+    ExcludedObjects out{
         {}, backdrop, kNoCast | kBackdrop, static_cast<unsigned char>(kNoCast | of_other_eye)};
     const bool has_hole = !objects.no_cast.empty() || !backdrop.empty() ||
                           (may_leave_out && shows_backdrop(known.views, out));
     if (has_hole || !objects.shadow_of.empty()) out.coverage = coverage(objects.no_cast);
     if (!objects.shadow_of.empty()) {
-      TakenOut both{coverage(objects.shadow_of), backdrop,
-                    static_cast<unsigned char>(out.marks | kShadowOf),
-                    static_cast<unsigned char>(out.marks_of_other_eye | kShadowOf)};
+      ExcludedObjects both{coverage(objects.shadow_of), backdrop,
+                           static_cast<unsigned char>(out.marks | kShadowOf),
+                           static_cast<unsigned char>(out.marks_of_other_eye | kShadowOf)};
       for (std::size_t i = 0; i < both.coverage.size(); ++i)
         both.coverage[i] = std::max(both.coverage[i], out.coverage[i]);
       KnownGeometry again = known;
@@ -137,9 +138,9 @@ void find_occluders(Frame& frame, KnownGeometry& known, const FrameOptions& opti
       frame.scene.without->geometry = frame.scene.geometry;
       frame.scene.without->senders.albedo = frame.scene.senders.albedo;
       use_known_geometry(again, *frame.scene.without, solids.thickness, solids.reading, &both);
-      find_blockers(frame, known, both, solids, *frame.scene.without);
+      find_linked_occluders(frame, known, both, solids, *frame.scene.without);
     }
-    find_blockers(frame, known, out, solids, frame.scene);
+    find_linked_occluders(frame, known, out, solids, frame.scene);
     frame.views = use_known_geometry(known, frame.scene, solids.thickness, solids.reading,
                                      has_hole ? &out : nullptr);
   }
@@ -156,11 +157,11 @@ void warn_of_unlit(const Frame& frame, const std::string& lamp, double arrives,
                    std::vector<std::string>& lines) {
   const LampOfFrame& of = frame.lamps.at(lamp);
   for (const std::string& line : frame.warnings())
-    if (line.starts_with(of.origin + ": ")) return;
+    if (line.starts_with(of.given_by + ": ")) return;
   lines.push_back(
       fmt::format("{}: {}: surfaces block {:.0f} % of its light from what the frame shows; {}",
-                  of.origin, of.is_near ? "position" : "direction", 100 * (1 - arrives),
-                  of.is_near ? "move it out of them" : "turn it"));
+                  of.given_by, of.is_local ? "position" : "direction", 100 * (1 - arrives),
+                  of.is_local ? "move it out of them" : "turn it"));
 }
 
 }  // namespace
@@ -279,7 +280,7 @@ void write_outputs(const std::vector<RelitFrame>& views,
     relit.times.write += watch.lap();
     return;
   }
-  std::vector<Shown> shown;
+  std::vector<ViewOutput> shown;
   for (const auto& [job, of_view] : views) {
     const auto& display = of_view->display;
     shown.push_back(

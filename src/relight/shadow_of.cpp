@@ -35,7 +35,7 @@ glm::vec3 of(const Plane<glm::vec3>& light, std::size_t i) {
 glm::vec3 facing_light(const Light& light, const Surfel& s, std::size_t pixel) {
   glm::vec3 sum = light.unoccluded_sky(s.normal);
   for (const auto& source : light.sources)
-    sum += source->taken_at(pixel) * source->unoccluded(s.position, source->cone(s.position).to);
+    sum += source->link_weight(pixel) * source->unoccluded(s.position, source->cone(s.position).to);
   return sum;
 }
 
@@ -58,7 +58,7 @@ void light_alike(Scene& without, const Scene& scene) {
 void find_shadow(Scene& without, Relit& relit) {
   const Scene& scene = relit.scene;
   light_alike(without, scene);
-  const Plane<int> sender = without.casting->sender;
+  const Plane<int> sender = without.caster_surfaces->sender;
   const Plan plan = plan_of_shadow(relit.plan);
   Estimate found = estimate(std::move(without), plan, [](double) {});
   light_products(found, plan);

@@ -25,7 +25,7 @@ const std::string& product_of_picture(const Target& target, const Plan& plan) {
 }
 
 /// `opened` are the view's products with kept pixels open.
-Results results_of(const Shown& view, const std::optional<Products>& opened) {
+Results results_of(const ViewOutput& view, const std::optional<Products>& opened) {
   return {view.scene, view.job.frame.gbuffer, view.products, view.plan.composition,
           opened ? &*opened : nullptr};
 }
@@ -175,19 +175,19 @@ ExrContents exr_contents(const RelightJob& job, const Plan& plan, const Target& 
   return contents;
 }
 
-Written write_targets(const std::vector<Shown>& views,
+Written write_targets(const std::vector<ViewOutput>& views,
                       const std::function<void(double)>& on_progress) {
   Stopwatch watch;
   Written out;
   std::vector<std::optional<Products>> opened;
-  for (const Shown& view : views)
+  for (const ViewOutput& view : views)
     opened.push_back(open_kept_pixels(view.products, view.scene, view.job.frame.gbuffer));
   const RelightJob& any = views.front().job;
   for (const Target& target : any.targets) {
     const SafeFile& file =
         *out.files.emplace_back(std::make_unique<SafeFile>(target.path, any.policy));
     std::vector<Results> shown;
-    std::vector<const Shown*> views_shown;
+    std::vector<const ViewOutput*> views_shown;
     for (std::size_t k = 0; k < views.size(); ++k) {
       if (!target.shows(views[k].job.frame.view)) continue;
       views_shown.push_back(&views[k]);
@@ -201,7 +201,7 @@ Written write_targets(const std::vector<Shown>& views,
       share_windows(contents);
       out.clamped_values += write_exr(file, by_part(contents));
     } else {
-      const Shown& view = *views_shown.front();
+      const ViewOutput& view = *views_shown.front();
       const DisplayImage image =
           make_display_image(product_of_picture(target, view.plan), shown.front(),
                              {view.display, keeps_alpha(target.path)});

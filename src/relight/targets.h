@@ -40,7 +40,7 @@ struct Written {
 };
 
 /// What targets show of a frame. `display` may be null where no target is a picture of a colour.
-struct Shown {
+struct ViewOutput {
   const RelightJob& job;
   const Scene& scene;
   const Plan& plan;
@@ -49,7 +49,7 @@ struct Shown {
 };
 
 /// Writes the targets of the jobs, which are the same for all `views`.
-Written write_targets(const std::vector<Shown>& views,
+Written write_targets(const std::vector<ViewOutput>& views,
                       const std::function<void(double)>& on_progress);
 
 }  // namespace ssdo

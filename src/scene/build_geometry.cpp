@@ -27,32 +27,33 @@ namespace {
 /// Camera-space positions, and the radius by which rounding may have moved each of them. Returns
 /// how many were left out because they lie behind the camera.
 std::size_t place_positions(const GBuffer& g, const Camera& camera, DepthKind kind, Geometry& out) {
+  out.surfaces = Surfaces::unset(g.window.width(), g.window.height());
   std::vector<std::size_t> behind(std::size_t(out.surfaces.height));
+  const auto surfel_at = [&](int x, int y, std::size_t i) -> Surfel {
+    constexpr Surfel kBroken{glm::vec3(0), glm::vec3(0), Surfel::kBroken};
+    if (!g.valid[i]) return !g.broken.empty() && g.broken[i] ? kBroken : Surfel();
+    glm::dvec3 p;
+    double magnitude;
+    if (g.position.empty()) {
+      const glm::dvec2 centre(g.window.x0 + x + 0.5, g.window.y0 + y + 0.5);
+      p = camera.unproject(centre, g.depth[i]);
+      if (kind == DepthKind::ray && !camera.orthographic) p *= g.depth[i] / glm::length(p);
+      magnitude = g.depth[i];
+    } else {
+      p = camera.to_camera(glm::dvec3(g.position[i]));
+      magnitude = std::max(
+          {std::abs(g.position[i].x), std::abs(g.position[i].y), std::abs(g.position[i].z)});
+    }
+    if (!camera.panorama && !(float(p.z) < 0)) {
+      ++behind[std::size_t(y)];
+      return kBroken;
+    }
+    return {glm::vec3(p), glm::vec3(0), float(magnitude) * g.position_step};
+  };
   for_each_row(out.surfaces.height, [&](int y) {
     for (int x = 0; x < out.surfaces.width; ++x) {
       const std::size_t i = out.surfaces.index(x, y);
-      if (!g.broken.empty() && g.broken[i]) out.surfaces.rounding[i] = Surfel::kBroken;
-      if (!g.valid[i]) continue;
-      glm::dvec3 p;
-      double magnitude;
-      if (g.position.empty()) {
-        const glm::dvec2 centre(g.window.x0 + x + 0.5, g.window.y0 + y + 0.5);
-        p = camera.unproject(centre, g.depth[i]);
-        if (kind == DepthKind::ray && !camera.orthographic) {
-          p *= g.depth[i] / glm::length(p);
-        }
-        magnitude = g.depth[i];
-      } else {
-        p = camera.to_camera(glm::dvec3(g.position[i]));
-        magnitude = std::max(
-            {std::abs(g.position[i].x), std::abs(g.position[i].y), std::abs(g.position[i].z)});
-      }
-      if (!camera.panorama && !(float(p.z) < 0)) {
-        ++behind[std::size_t(y)];
-        out.surfaces.rounding[i] = Surfel::kBroken;
-        continue;
-      }
-      out.surfaces.set(i, {glm::vec3(p), glm::vec3(0), float(magnitude) * g.position_step});
+      out.surfaces.set(i, surfel_at(x, y, i));
     }
   });
   return std::accumulate(behind.begin(), behind.end(), std::size_t(0));
@@ -89,7 +90,7 @@ std::string name_of_world(const GeometryReport& report) {
 /// The spaces that N may be in.
 std::vector<NamedRotation> spaces_of_normals(const GBuffer& g, const GeometryReport& report) {
   const Placement& found = report.placement;
-  const glm::mat3 of_positions(found.of_positions.rotation), world(found.camera.rotation);
+  const glm::mat3 of_positions(found.position_camera.rotation), world(found.camera.rotation);
   std::vector<NamedRotation> spaces;
   if (!g.position.empty()) spaces.push_back({of_positions, "the space of P"});
   spaces.push_back({glm::mat3(1), "camera space"});
@@ -104,10 +105,11 @@ std::string_view name_of(Space space) { return space == Space::world ? "world" :
 NamedRotation given_space_of_normals(const GBuffer& g, const Geometry& out,
                                      const GeometryReport& report, const std::string& file) {
   const Placement& found = report.placement;
-  const NamedRotation of_positions{glm::mat3(found.of_positions.rotation), "the space of P"},
+  const NamedRotation of_positions{glm::mat3(found.position_camera.rotation), "the space of P"},
       of_camera{glm::mat3(1), "camera space"};
   if (*g.space == Space::camera) {
-    const bool same = !g.position.empty() && found.of_positions.is_camera_space(median_depth(out));
+    const bool same =
+        !g.position.empty() && found.position_camera.is_camera_space(median_depth(out));
     return same ? of_positions : of_camera;
   }
   if (!g.position.empty()) return of_positions;
@@ -144,8 +146,7 @@ bool is_depth_planar(const GBuffer& g, const Geometry& planar, const NormalSpace
                      GeometryReport& report) {
   if (planar.camera.orthographic) return true;
   Geometry by_rays;
-  by_rays.surfaces = Surfaces(planar.surfaces.width, planar.surfaces.height);
-  place_positions(g, to_grid(report.placement.of_positions, g.grid), DepthKind::ray, by_rays);
+  place_positions(g, to_grid(report.placement.position_camera, g.grid), DepthKind::ray, by_rays);
   const NormalSpace of_rays =
       find_normal_space(g.normal, by_rays.surfaces, spaces_of_normals(g, report), false);
   const bool clearly = 1 - of_rays.mean_cosine < kClearlyBetter * (1 - of_planar.mean_cosine);
@@ -316,7 +317,7 @@ void mend(const GBuffer& g, Geometry& out, GeometryReport& report, const Placeme
 /// axis. --space decides first.
 bool is_in_world_space(const GBuffer& g, const Placement& found, GeometryReport& report) {
   if (g.position.empty()) return false;
-  const bool in_camera_space = found.of_positions.is_camera_space(found.median_depth);
+  const bool in_camera_space = found.position_camera.is_camera_space(found.median_depth);
   if (g.space == Space::camera && !in_camera_space) {
     report.warnings.push_back(
         "--space camera: the camera of P stands elsewhere than at its origin, or is turned; the "
@@ -333,13 +334,16 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   out.window = g.window;
   out.display = g.display;
   out.part_of = g.part_of;
-  out.surfaces = Surfaces(g.window.width(), g.window.height());
   // Where the overview of a frame shows no surface, the camera is not known.
-  if (known && known->median_depth <= 0) return out;
+  if (known && known->median_depth <= 0) {
+    out.surfaces = Surfaces(g.window.width(), g.window.height());
+    return out;
+  }
   if (!known && g.background_pixels + g.bad_pixels >= g.valid.size() &&
       std::none_of(g.valid.pixels.begin(), g.valid.pixels.end(), [](auto v) { return v != 0; })) {
     report.camera_source = "none: the frame shows no surface";
     report.warnings.push_back("the frame shows no surface");
+    out.surfaces = Surfaces(g.window.width(), g.window.height());
     return out;
   }
   Placement& placement = report.placement;
@@ -348,13 +352,13 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
     placement = *known;
   } else {
     const FoundCamera found = find_camera(g, options, file, report);
-    placement.camera = found.camera, placement.of_positions = found.of_positions;
+    placement.camera = found.camera, placement.position_camera = found.position_camera;
     placement.world_given = found.world_given;
     readings = found.readings;
   }
   out.camera = to_grid(placement.camera, g.grid);
-  const Camera of_positions = to_grid(placement.of_positions, g.grid);
-  if (const std::size_t behind = place_positions(g, of_positions, g.depth_kind, out)) {
+  const Camera position_camera = to_grid(placement.position_camera, g.grid);
+  if (const std::size_t behind = place_positions(g, position_camera, g.depth_kind, out)) {
     report.warnings.push_back(
         fmt::format("{} positions lie behind the camera and are left out", behind));
   }
@@ -364,7 +368,7 @@ Geometry build_geometry(const GBuffer& g, const CameraOptions& options, const st
   }
   const UsedNormals normals = known ? UsedNormals{known->normals_to_camera}
                                     : find_normals(g, out, options.shot.normal_space, file, report);
-  out.normals_to_camera = normals.to_camera.value_or(glm::mat3(placement.of_positions.rotation));
+  out.normals_to_camera = normals.to_camera.value_or(glm::mat3(placement.position_camera.rotation));
   place_normals(g, normals, out, report);
   mend(g, out, report, known);
   if (!known) {

@@ -15,15 +15,15 @@
 namespace ssdo {
 
 /// The camera of another frame of the sequence, in the pixels of its file and the space of its P.
-struct CameraBeside {
+struct NeighbourCamera {
   Camera camera;
   Window display;
   std::string file;
 };
 
 /// What other frames of a sequence tell, for a frame that leaves it open.
-struct FromShot {
-  std::optional<CameraBeside> camera;
+struct ShotHints {
+  std::optional<NeighbourCamera> camera;
   std::string normal_space;  ///< as in GeometryReport; empty: not known
 };
 
@@ -32,7 +32,7 @@ struct CameraOptions {
   std::string file;             ///< --camera: JSON with projection and pose
   std::optional<double> fov;    ///< --fov: horizontal, degrees
   std::optional<double> ortho;  ///< --ortho: width of the frame in scene units
-  FromShot shot = {};           ///< what stands in for P and N where they do not tell enough
+  ShotHints shot = {};          ///< what stands in for P and N where they do not tell enough
 };
 
 /// The visible surfaces in camera space, in the scene's unit. Every stage after this one knows one
@@ -58,7 +58,7 @@ struct Geometry {
 /// How a frame lies in camera space, as all of its pixels say together.
 struct Placement {
   /// The camera of the frame, and the transform from stored P to camera space; see FoundCamera.
-  Camera camera, of_positions;
+  Camera camera, position_camera;
   bool world_given = false;
   std::optional<glm::mat3> normals_to_camera;  ///< nothing: normals are rebuilt from P
   bool mends_silhouettes = false;

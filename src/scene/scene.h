@@ -26,7 +26,7 @@ struct Senders {
 
 /// What hides and sends light, where that is not what the pixels show: objects that cast nothing
 /// are taken out, and what may be behind them is put in their place.
-struct Casting {
+struct CasterSurfaces {
   Geometry geometry;          ///< at the pixels of Scene::geometry
   Plane<int> sender;          ///< the pixel whose light a pixel sends; -1: its own surface's
   Plane<unsigned char> hole;  ///< 1 in the pixels of those objects
@@ -35,23 +35,23 @@ struct Casting {
 /// All that is known about what a frame shows, in camera space and scene units: what an estimator
 /// looks at.
 struct Scene {
-  Geometry geometry;  ///< what receives light, and, without `casting`, hides and sends it
-  std::optional<Casting> casting;
+  Geometry geometry;  ///< what receives light, and, without `caster_surfaces`, hides and sends it
+  std::optional<CasterSurfaces> caster_surfaces;
   Solids solids;                 ///< of what casts
   std::vector<OtherView> views;  ///< of other cameras
   OtherSurfaces other_surfaces;  ///< seen by `views`, but not by the frame
   Senders senders;
   Light light;
   /// For each lamp that names its casters, by its number in Light::sources: these casters alone, in
-  /// this frame and in the other views. Only casting, solids and other_surfaces are filled.
-  std::map<std::size_t, std::shared_ptr<const Scene>> blockers;
+  /// this frame and in the other views. Only caster_surfaces, solids and other_surfaces are filled.
+  std::map<std::size_t, std::shared_ptr<const Scene>> linked_occluders;
   Plane<float> roughness;           ///< 0..1; empty: the same everywhere, a parameter of the method
   Plane<HalfColor> specular_color;  ///< F0, 0..1; empty: of an index of refraction, a parameter
   /// The same frame without the objects of --shadow-of; null: not asked for. Its light, roughness
   /// and colours are those of this scene, and empty there.
   std::shared_ptr<Scene> without;
 
-  const Geometry& casters() const { return casting ? casting->geometry : geometry; }
+  const Geometry& casters() const { return caster_surfaces ? caster_surfaces->geometry : geometry; }
 };
 
 }  // namespace ssdo

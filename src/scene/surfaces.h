@@ -56,6 +56,14 @@ struct Surfaces {
     }
   }
 
+  /// Components that are whatever was in memory.
+  static Surfaces unset(int w, int h) {
+    Surfaces surfaces;
+    surfaces.width = w, surfaces.height = h;
+    surfaces.for_each_plane([&](Plane<float>& plane) { plane = Plane<float>::unset(w, h); });
+    return surfaces;
+  }
+
   bool empty() const { return rounding.empty(); }
   std::size_t size() const { return rounding.size(); }
   std::size_t index(int x, int y) const { return rounding.index(x, y); }

@@ -65,7 +65,7 @@ void check_positions(const View& view, const Camera* camera) {
 
 /// The camera of P, in the pixels of the G-buffer.
 Camera camera_of_positions(const View& view) {
-  return to_grid(view.report.placement.of_positions, view.gbuffer.grid);
+  return to_grid(view.report.placement.position_camera, view.gbuffer.grid);
 }
 
 /// Layers that were never written, which are 0 everywhere, are not used of any part of the frame.

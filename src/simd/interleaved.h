@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "math/share16.h"
+#include "math/fixed_ratio16.h"
 #include "simd/width.h"
 
 namespace ssdo {
@@ -106,10 +106,10 @@ class InterleavedValues {
 };
 
 using InterleavedPlane = InterleavedValues<float>;
-using InterleavedShares = InterleavedValues<Share16>;
+using InterleavedRatios = InterleavedValues<FixedRatio16>;
 
 /// Vectors or colours of a picture in that order, coordinate by coordinate.
 using InterleavedVectors = std::array<InterleavedPlane, 3>;
-using InterleavedColorShares = std::array<InterleavedShares, 3>;
+using InterleavedColorRatios = std::array<InterleavedRatios, 3>;
 
 }  // namespace ssdo

@@ -40,7 +40,7 @@ TEST(Ladder, OfEveryMethodHasItsDefaultAndALimitBeyondAll) {
     EXPECT_GE(samples_of(settings.limit) * settings.seeds, most) << method.name;
     EXPECT_TRUE(settings.seeds == 1 || settings.seeds % 2 == 0) << method.name;
     const ModelOptions plain, standard = standard_setting(method).applied_to(plain);
-    if (method.takes.march) {
+    if (method.supports.march) {
       EXPECT_EQ(standard.slices, slices_of(plain.quality));
       EXPECT_EQ(standard.steps, steps_of(plain.quality));
     } else {

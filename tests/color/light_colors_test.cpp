@@ -8,7 +8,7 @@
 
 #include "color/compose.h"
 #include "color/display_image.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 #include "scene/light/painted_map.h"
 #include "support/point_source.h"
 #include "support/scene_of.h"
@@ -35,7 +35,7 @@ class LightColors : public testing::Test {
     // Half a unit above the surface: 4 times what they give at a distance of 1.
     add_lamp("key", {1, 0.5f, 0.25f});
     add_lamp("fill", {0.25f, 0.25f, 0});
-    lights_ = lights_of(scene_.light);
+    lights_ = light_groups_of(scene_.light);
     const glm::vec3 shares[] = {{0.5f, 0.25f, 0.75f}, glm::vec3(0.25f), glm::vec3(0)};
     products_.direct = Plane<glm::vec3>(2, 1, glm::vec3(0));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -67,7 +67,7 @@ class LightColors : public testing::Test {
   glm::vec3 occluded(std::size_t pixel = 0) const { return composite(results()).color[pixel]; }
 
   Scene scene_;
-  std::vector<NamedLight> lights_;
+  std::vector<LightGroup> lights_;
   GBuffer gbuffer_;
   Products products_;
   Composition composition_{Compose::occlude, false};

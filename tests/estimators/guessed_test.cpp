@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "estimators/bitmask/request.h"
-#include "scene/other_views/take_out.h"
+#include "scene/other_views/remove_objects.h"
 #include "support/boxes.h"
 
 namespace ssdo::test::guessed_test {
@@ -133,7 +133,7 @@ TEST(Guessed, WhatIsTakenOutIsNotMet) {
   for (std::size_t i = 0; i < coverage.size(); ++i)
     coverage[i] = seen.geometry.surfaces[i].position != open.surfaces[i].position ? 1.0f : 0.0f;
   Scene hole = scene_of(seen.geometry);
-  hole.casting = take_out(hole.geometry, coverage, {}, {});
+  hole.caster_surfaces = remove_objects(hole.geometry, coverage, {}, {});
   const Plane<float> with = shares(seen, 3), without = shares(hole, 3);
   // The floor before the ball looks up at the side that is seen; the ball itself looks at the
   // floor.

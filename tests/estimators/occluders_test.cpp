@@ -85,7 +85,7 @@ TEST(Occluders, AreAskedUpToWhereTheRayEnds) {
     scene.light.sources.push_back(std::make_shared<PointSource>(glm::vec3(camera.to_camera(lamp))));
   for (const Method& method : {bitmask_method(), trace_method()}) {
     const Products out = estimate(method, scene, {.ao = true, .direct = true, .reflection = true});
-    ASSERT_EQ(out.shares.suns.size(), 3u);
+    ASSERT_EQ(out.visibility.sources.size(), 3u);
     const auto check = [&](const char* what, const Plane<float>& shares, const auto& expected) {
       const Wrong off = wrong(surface, shares, expected);
       fmt::print("{}, {}: {:.4f} of the hidden and {:.4f} of the open pixels are wrong\n",
@@ -94,11 +94,11 @@ TEST(Occluders, AreAskedUpToWhereTheRayEnds) {
       EXPECT_LT(off.of_open, 0.02) << method.name << ": " << what;
       return off.has_hidden;
     };
-    EXPECT_TRUE(check("a sun", out.shares.suns[0],
+    EXPECT_TRUE(check("a sun", out.visibility.sources[0],
                       [&](const Point& p) { return is_open(surface, p, to_sun, kNoLimit); }));
     for (int k = 0; k < 2; ++k) {
       const bool has_hidden =
-          check(k == 0 ? "a lamp below the slab" : "a lamp above it", out.shares.suns[k + 1],
+          check(k == 0 ? "a lamp below the slab" : "a lamp above it", out.visibility.sources[k + 1],
                 [&](const Point& p) {
                   const glm::dvec3 way = lamps[k] - p.position;
                   return is_open(surface, p, glm::normalize(way), glm::length(way));

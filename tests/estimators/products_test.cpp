@@ -44,7 +44,7 @@ TEST(Products, EachRowHasItsOwnNameAndPlane) {
   EXPECT_EQ(planes, sets);
   // A plane or a place in a set without a row would be larger than all rows together.
   EXPECT_EQ(sizeof(ProductSet), std::size_t(sets));
-  EXPECT_EQ(sizeof(Products), std::size_t(planes) * sizeof(Plane<float>) + sizeof(LightShares) +
+  EXPECT_EQ(sizeof(Products), std::size_t(planes) * sizeof(Plane<float>) + sizeof(LightVisibility) +
                                   sizeof(Products::lights) + sizeof(Products::lit) +
                                   sizeof(Products::lit_without));
 }

@@ -26,7 +26,7 @@ class EveryMethod : public testing::TestWithParam<const Method*> {
                     .bounces = method().products.bounce,
                     .parameters = resolve_parameters(method(), {})};
     for (const auto& [name, value] : method().ladder.rungs.front().values) {
-      if (!method().takes.march)
+      if (!method().supports.march)
         request.parameters[std::string(name)] = value;
       else
         (name == "slices" ? request.slices : request.steps) = value;
@@ -132,7 +132,7 @@ TEST_P(EveryMethod, HasParametersWithinTheirRangesAndALadderOfThem) {
   rungs.push_back(method().ladder.limit);
   for (const Rung& rung : rungs) {
     for (const auto& [name, value] : rung.values) {
-      if (method().takes.march) {
+      if (method().supports.march) {
         EXPECT_TRUE(name == "slices" || name == "steps") << name;
         continue;
       }

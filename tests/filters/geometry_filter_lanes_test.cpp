@@ -124,9 +124,11 @@ TEST(GeometryFilterLanes, AreTheReference) {
           EXPECT_NEAR(out.reflection(x, y), expected(in.reflection, shadowed), 1e-4);
           EXPECT_NEAR(out.error(x, y), expected(in.error), 1e-4);
           EXPECT_LT(difference(out.direct(x, y), expected3(in.direct, shadowed)), 1e-4);
-          EXPECT_LT(difference(out.shares.sky(x, y), expected3(in.shares.sky, shadowed)), 1e-4);
+          EXPECT_LT(difference(out.visibility.sky(x, y), expected3(in.visibility.sky, shadowed)),
+                    1e-4);
           for (std::size_t k = 0; k < 2; ++k)
-            EXPECT_NEAR(out.shares.suns[k](x, y), expected(in.shares.suns[k], shadowed), 1e-4);
+            EXPECT_NEAR(out.visibility.sources[k](x, y),
+                        expected(in.visibility.sources[k], shadowed), 1e-4);
           EXPECT_LT(difference(out.bounce(x, y), reference_bounce(in, g, pattern_size, x, y)),
                     1e-4);
           EXPECT_LT(difference(out.bent(x, y), expected3(in.bent, {.unit = true})), 1e-4);

@@ -62,11 +62,11 @@ TEST(GeometryFilter, KeepsTheEdgeOfAShadow) {
   for (int y = 0; y < kWindow.height(); ++y) {
     for (int x = 0; x < 30; ++x) p.ao(x, y) = 0.4f, p.direct(x, y) = glm::vec3(0.4f, 0.3f, 0.5f);
   }
-  p.shares.suns = {p.ao};
+  p.visibility.sources = {p.ao};
   // Averaged over 8 x 8, these would have 0.56 and 0.74 of ao.
   const Products out = filter_products(find_filter("geometry"), p, g.surfaces, 8);
-  EXPECT_LT(out.shares.suns[0](28, 24), 0.47);
-  EXPECT_GT(out.shares.suns[0](31, 24), 0.83);
+  EXPECT_LT(out.visibility.sources[0](28, 24), 0.47);
+  EXPECT_GT(out.visibility.sources[0](31, 24), 0.83);
   EXPECT_LT(out.ao(28, 24), 0.47);
   EXPECT_GT(out.ao(31, 24), 0.83);
   EXPECT_LT(out.direct(28, 24).y, 0.3 + 2.7 * 0.14);

@@ -11,8 +11,8 @@
 #include <optional>
 
 #include "estimators/bitmask/request.h"
+#include "filters/light_visibility.h"
 #include "filters/registry.h"
-#include "filters/shares.h"
 #include "scene/light/lamps/lamp.h"
 #include "support/boxes.h"
 
@@ -44,7 +44,7 @@ Products lit(const Scene& scene, int bounces = 0) {
                                  .slices = 2,
                                  .steps = 16},
                                 {});
-  return filter_shares(find_filter("geometry"), std::move(out), scene, 8);
+  return filter_visibility(find_filter("geometry"), std::move(out), scene, 8);
 }
 
 /// The share of a ball's light that arrives at each pixel: as found, and by rays to a disc in its

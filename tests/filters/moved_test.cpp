@@ -94,9 +94,9 @@ TEST(Moved, WeightsAreThoseOfTheFormFactor) {
 TEST(Moved, WhatMovesAlongHidesTheSame) {
   const Camera above = look_at(camera_from_fov(45, kWindow, 1), {0, 0, 4}, {}, {0, 1, 0});
   const KeptSurfaces floor = keep_surfaces(geometry_of(plane({}, {0, 0, 1}), above, kWindow));
-  OwnMotion motion;
+  ObjectMotion motion;
   motion.is_known = true;
-  motion.pixels.assign(floor.size(), two_in_one(3.0f, 0.0f));
+  motion.pixels.assign(floor.size(), pack_bf16x2(3.0f, 0.0f));
   const float radius = 0.3f, height = 2, hidden = 0.05f;
   const float area = hidden * 3.14159265f * (height * height + radius * radius);
   const auto weight_of = [&](const glm::vec3& velocity, int frames) {
@@ -174,7 +174,7 @@ TEST(Fusion, JoinsTheLightOfSmallSenders) {
     return Plane<glm::vec3>(kWindow.width(), kWindow.height(), glm::vec3(value));
   };
   Products with, without, fused;
-  with.bounce = light(0.5f), with.shares.emitted = light(2);
+  with.bounce = light(0.5f), with.visibility.emitted = light(2);
   without.bounce = light(0.5f);
   for (Products* products : {&with, &without, &fused}) products->lights.resize(1);
   with.lights[0].bounce = light(0.25f), with.lights[0].emitted = light(1);

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "estimators/bitmask/request.h"
+#include "filters/light_visibility.h"
 #include "filters/registry.h"
-#include "filters/shares.h"
 #include "scene/light/painted_map.h"
 #include "support/boxes.h"
 
@@ -58,7 +58,7 @@ Products lit(const Geometry& g, const Environment& map, unsigned seed = 0) {
                                             .slices = 2,
                                             .steps = 16},
                                            {});
-  return filter_shares(find_filter("geometry"), std::move(out), scene, 8);
+  return filter_visibility(find_filter("geometry"), std::move(out), scene, 8);
 }
 
 /// The share of a disc's light that arrives at each pixel: as found, and by rays. -1 where the

@@ -7,15 +7,16 @@
 #include <cmath>
 
 #include "estimators/specular/specular_scene.h"
-#include "filters/shares.h"
+#include "filters/light_visibility.h"
 
 namespace ssdo::test::specular_test {
 namespace {
 
 Plane<glm::vec3> filtered(const std::string& method, const Scene& scene, double roughness) {
   const Method& by = find_method(method);
-  return filter_shares(find_filter("geometry"), by.estimate(scene, request_of(by, roughness), {}),
-                       scene, by.pattern_size)
+  return filter_visibility(find_filter("geometry"),
+                           by.estimate(scene, request_of(by, roughness), {}), scene,
+                           by.pattern_size)
       .specular;
 }
 
@@ -196,7 +197,7 @@ TEST(Specular, PartsOfAFrameAreAsInTheWhole) {
   for (int y = 7; y < 50; ++y) {
     for (int x = 13; x < 61; ++x) {
       ASSERT_EQ(part.specular(x - 13, y - 7), whole.specular(x, y)) << x << " " << y;
-      ASSERT_EQ(part.shares.mirrored_sky(x - 13, y - 7), whole.shares.mirrored_sky(x, y));
+      ASSERT_EQ(part.visibility.mirrored_sky(x - 13, y - 7), whole.visibility.mirrored_sky(x, y));
     }
   }
 }

@@ -9,8 +9,8 @@
 
 #include "estimators/bitmask/request.h"
 #include "estimators/registry.h"
+#include "filters/light_visibility.h"
 #include "filters/registry.h"
-#include "filters/shares.h"
 #include "scene/light/painted_map.h"
 #include "support/fixed_frame.h"
 #include "support/point_source.h"
@@ -56,10 +56,10 @@ TEST(UnoccludedLight, IsTheSameForAllThatUseIt) {
     ++methods_with_light;
     const Products out = method.estimate(scene, fixed_request(method, 1), {});
     // What methods take for occluded on an open floor is theirs.
-    const bool by_ao = out.shares.sky.empty() && method.name != "ssdo";
+    const bool by_ao = out.visibility.sky.empty() && method.name != "ssdo";
     EXPECT_LT(largest_difference(scene, out, by_ao), 1e-4) << method.name;
     const Products filtered =
-        filter_shares(find_filter("geometry"), out, scene, method.pattern_size);
+        filter_visibility(find_filter("geometry"), out, scene, method.pattern_size);
     EXPECT_LT(largest_difference(scene, filtered, by_ao), 1e-3) << method.name;
   }
   EXPECT_GE(methods_with_light, 5);

@@ -17,7 +17,7 @@ inline Products run_method(const Method& method, const HardFrame& frame,
                            const std::vector<std::string>& set = {}) {
   Scene scene = scene_of(frame.geometry, frame.environment);
   scene.senders.albedo = frame.albedo;
-  if (method.takes.thickness) scene.solids = guess_solids(frame.geometry);
+  if (method.supports.thickness) scene.solids = guess_solids(frame.geometry);
   return method.estimate(scene,
                          {.products = method.products,
                           .radius = frame.radius,

@@ -76,7 +76,7 @@ Products fade_with_its_filter(const HardFrame& frame) {
   ModelOptions model;
   model.method = "ssao-fade";
   model.radius = frame.radius;
-  model.filter = kSourceFilter;
+  model.filter = kPublishedFilter;
   OutputOptions output;
   output.products = {"ao", "direct"};
   return estimate_light(scene, make_plan(model, output, scene, {}, "")).products;
@@ -135,7 +135,7 @@ TEST_P(HardCases, ThroughEveryFilter) {
   };
   for (const Filter& filter : filters())
     check(filter.name, [&] { return filter_products(filter, clean, frame_.geometry.surfaces, 4); });
-  check(kSourceFilter, [&] { return fade_with_its_filter(frame_); });
+  check(kPublishedFilter, [&] { return fade_with_its_filter(frame_); });
   check("temporal", [&] {
     History history = accumulate(nullptr, frame_.geometry, clean);
     history.geometry = frame_.geometry;

@@ -106,7 +106,8 @@ RandomShot with_all_given(RandomShot shot, RandomNumbers& random) {
   for (const SeenPoint& p : shot.seen.pixels) depth = std::max(depth, -p.position.z);
   const double pixel = (shot.lens.camera.orthographic ? 1 : depth) / shot.lens.camera.fx;
   model.radius = pixel * random.by_ratio(0.1, 1.5);
-  if (find_method(model.method).takes.thickness) model.thickness = pixel * random.by_ratio(0.1, 10);
+  if (find_method(model.method).supports.thickness)
+    model.thickness = pixel * random.by_ratio(0.1, 10);
   model.quality = Quality::standard;
   model.slices.reset(), model.steps.reset();
   model.filter = "none";
@@ -158,7 +159,8 @@ Measured change_in_a_moved_world(const Subject& s) {
 /// Of most random frames no pixel is that far inside: the shot is made three times as fine.
 Measured change_by_a_crop(const Subject& s) {
   const RandomShot shot = random_shot(s.shot.seed, 3);
-  if (!shot.is_plain() || !find_method(shot.options.model.method).takes.radius) return std::nullopt;
+  if (!shot.is_plain() || !find_method(shot.options.model.method).supports.radius)
+    return std::nullopt;
   RandomNumbers random(shot.seed + 6);
   const RandomShot whole = with_all_given(shot, random);
   const Window& all = shot.lens.data;

@@ -16,9 +16,9 @@
 #include "filters/registry.h"
 #include "parallel/task_order.h"
 #include "relight/estimate.h"
-#include "support/estimate_light.h"
 #include "support/chosen_isa.h"
 #include "support/crop.h"
+#include "support/estimate_light.h"
 #include "support/fixed_frame.h"
 #include "support/recorded_hashes.h"
 #include "support/report.h"
@@ -26,7 +26,7 @@
 namespace ssdo::test::same_bits_test {
 namespace {
 
-constexpr float kRadius = 0.75f, kEndless = std::numeric_limits<float>::infinity();
+constexpr float kRadius = 0.75f, kInfiniteLength = std::numeric_limits<float>::infinity();
 
 struct Case {
   std::string_view method, filter;
@@ -35,7 +35,7 @@ struct Case {
 
   std::string name() const {
     return fmt::format("{}{}{}/{}", method, learned ? "-learned" : "",
-                       radius == kEndless ? "-endless" : "", filter);
+                       radius == kInfiniteLength ? "-endless" : "", filter);
   }
 };
 
@@ -46,13 +46,13 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const Method& method : methods()) {
     for (const char* filter : {"none", "geometry"}) all.push_back({method.name, filter});
-    if (method.takes.endless_radius) all.push_back({method.name, "none", kEndless});
+    if (method.supports.infinite_radius) all.push_back({method.name, "none", kInfiniteLength});
   }
   for (const Filter& filter : filters()) {
     if (filter.name != "none" && filter.name != "geometry")
       all.push_back({methods().front().name, filter.name});
   }
-  all.push_back({methods().front().name, "geometry", kEndless, true});
+  all.push_back({methods().front().name, "geometry", kInfiniteLength, true});
   return all;
 }
 

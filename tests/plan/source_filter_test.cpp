@@ -19,9 +19,9 @@ Plan plan_of(const Scene& scene, const std::string& method,
              const std::vector<std::string>& set = {}) {
   ModelOptions model;
   model.method = method;
-  if (find_method(method).takes.radius) model.radius = 0.8;
+  if (find_method(method).supports.radius) model.radius = 0.8;
   model.set = set;
-  model.filter = kSourceFilter;
+  model.filter = kPublishedFilter;
   OutputOptions output;
   output.products = {"ao"};
   return make_plan(model, output, scene, {}, "in.exr");
@@ -38,7 +38,7 @@ struct MethodAndFilter {
   bool half = false;
 };
 
-TEST(SourceFilter, IsThatOfTheSourceAndThePlanSaysSo) {
+TEST(PublishedFilter, IsThatOfTheSourceAndThePlanSaysSo) {
   const Scene scene = scene_of(room());
   const MethodAndFilter cases[] = {{"bitmask", "geometry"},
                                    {"trace", "none"},
@@ -89,7 +89,7 @@ Plane<double> slow_pass(const Plane<double>& map, const Geometry& g, int dx, int
   return out;
 }
 
-TEST(SourceFilter, OfSsaoFadeIsThreeRoundsAtHalfResolutionThatThenGoUp) {
+TEST(PublishedFilter, OfSsaoFadeIsThreeRoundsAtHalfResolutionThatThenGoUp) {
   const Geometry g = room();
   const Scene scene = scene_of(g);
   Plane<double> half = slow_half_map(g, 0.8f);

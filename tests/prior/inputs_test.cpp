@@ -50,8 +50,8 @@ Geometry frame_of_vectors(const std::vector<float>& camera) {
 }
 
 /// The estimate that data/prior/vectors.py makes up.
-Squares made_up(const Geometry& g) {
-  Squares s = make_squares(g, {0, 0, g.surfaces.width, g.surfaces.height});
+PriorGrid made_up(const Geometry& g) {
+  PriorGrid s = make_prior_grid(g, {0, 0, g.surfaces.width, g.surfaces.height});
   EXPECT_EQ(s.step, 1);
   s.ao = s.open_ao = s.guessed = Plane<float>::like(g.surfaces);
   s.bent = Plane<glm::vec3>::like(g.surfaces);
@@ -71,11 +71,11 @@ TEST(PriorInputs, AreThoseOfTheTraining) {
   ASSERT_EQ(vectors.camera.size(), 11u);
   ASSERT_GE(vectors.places.size(), 32u);
   const Geometry geometry = frame_of_vectors(vectors.camera);
-  const Squares squares = made_up(geometry);
+  const PriorGrid grid = made_up(geometry);
   // z is up.
   const glm::vec3 up(vectors.camera[2], vectors.camera[5], -vectors.camera[8]);
   for (const PriorVector& place : vectors.places) {
-    const PriorInputs inputs(squares, geometry, place.upright ? std::optional(up) : std::nullopt,
+    const PriorInputs inputs(grid, geometry, place.upright ? std::optional(up) : std::nullopt,
                              place.radius);
     const auto stride = std::size_t(geometry.surfaces.width);
     std::vector<float> rows(PriorInputs::kOwn * stride);

@@ -12,7 +12,7 @@
 
 #include "estimators/bitmask/request.h"
 #include "estimators/guessed.h"
-#include "filters/shares.h"
+#include "filters/light_visibility.h"
 #include "parallel/task_order.h"
 #include "parallel/tiles.h"
 #include "prior/prior.h"
@@ -73,15 +73,15 @@ Found find(const Scene& scene, const ProductSet& products, bool learned = true) 
   Request request{.products = products,
                   .radius = kNoLimit,
                   .bounces = products.bounce ? 2 : 0,
-                  .shares_suffice = true};
+                  .visibility_suffices = true};
   request.products.guessed = false;
   Found found;
   if (learned) request.ask_prior = ask_prior({up, request.radius, request.seed}, found.field);
   Products noisy = method.estimate(scene, request, {});
-  found.products = filter_shares(find_filter("geometry"), std::move(noisy), scene,
-                                 method.pattern_size, [&](Products& filtered) {
-                                   if (learned) apply_prior(*found.field, scene, filtered);
-                                 });
+  found.products = filter_visibility(find_filter("geometry"), std::move(noisy), scene,
+                                     method.pattern_size, [&](Products& filtered) {
+                                       if (learned) apply_prior(*found.field, scene, filtered);
+                                     });
   if (learned) finish_with_prior(*found.field, scene, products.guessed, found.products);
   return found;
 }
@@ -127,21 +127,22 @@ TEST(PriorLight, OfASunComesWhereTheSkyDoes) {
   const Scene scene = room_in(sunny());
   ASSERT_EQ(scene.light.sources.size(), 1u);
   PriorField field = *find(scene, {.ao = true, .direct = true}).field;
-  for (std::size_t i = 0; i < field.past.size(); ++i) {
-    if (field.squares.pixel[i] == kNoPixel) continue;
-    ASSERT_TRUE(field.past[i] >= 0 && field.past[i] <= 1) << field.past[i];
-    const float unhidden = field.squares.open_ao[i], after = field.squares.ao[i] + field.change[i];
+  for (std::size_t i = 0; i < field.offscreen_sun.size(); ++i) {
+    if (field.grid.pixel[i] == kNoPixel) continue;
+    ASSERT_TRUE(field.offscreen_sun[i] >= 0 && field.offscreen_sun[i] <= 1)
+        << field.offscreen_sun[i];
+    const float unhidden = field.grid.open_ao[i], after = field.grid.ao[i] + field.change[i];
     if (after >= unhidden) {
-      EXPECT_EQ(field.past[i], 1);
+      EXPECT_EQ(field.offscreen_sun[i], 1);
     } else if (after < unhidden - 0.01f) {
-      EXPECT_LT(field.past[i], 1) << after << " of " << unhidden;
+      EXPECT_LT(field.offscreen_sun[i], 1) << after << " of " << unhidden;
     }
   }
-  std::fill(field.past.pixels.begin(), field.past.pixels.end(), 0.25f);
+  std::fill(field.offscreen_sun.pixels.begin(), field.offscreen_sun.pixels.end(), 0.25f);
   for (const float rules : {0.25f, 1.0f}) {
     const LearnedVisibility learned = by_pixel(field, scene.geometry, rules);
     for_each_surface(scene, [&](std::size_t i, const glm::vec3&) {
-      ASSERT_NEAR(learned.past[i], (0.25f + rules) / 2, 1e-6f) << "halfway to the rules";
+      ASSERT_NEAR(learned.offscreen_sun[i], (0.25f + rules) / 2, 1e-6f) << "halfway to the rules";
     });
   }
 }
@@ -151,14 +152,14 @@ TEST(PriorLight, OfASunIsWhatThePriorLetsPass) {
   const Scene scene = room_in(sunny());
   const auto mean_share = [&](float past) {
     const Plane<float>& any = Plane<float>::like(scene.geometry.surfaces);
-    Request request{.products = {.direct = true}, .radius = kNoLimit, .shares_suffice = true};
+    Request request{.products = {.direct = true}, .radius = kNoLimit, .visibility_suffices = true};
     request.ask_prior = [&](const PriorQuestion& question) {
       EXPECT_TRUE(question.for_light);
       return LearnedVisibility{Plane<float>(any.width, any.height, 0.0f),
                                Plane<float>(any.width, any.height, past)};
     };
     const Plane<float> share =
-        std::move(bitmask_method().estimate(scene, request, {}).shares.suns.front());
+        std::move(bitmask_method().estimate(scene, request, {}).visibility.sources.front());
     double sum = 0;
     for (const float s : share.pixels) sum += double(s) / double(share.size());
     return sum;
@@ -242,7 +243,7 @@ TEST(Prior, LeansBentNormalsAndExpectsAnErrorWhereItGuesses) {
   EXPECT_TRUE(has_background);
   const PriorField& field = *found.field;
   for (std::size_t i = 0; i < field.spread.size(); ++i) {
-    if (field.squares.guessed[i] > 0) continue;
+    if (field.grid.guessed[i] > 0) continue;
     EXPECT_EQ(field.spread[i], 0);
     EXPECT_EQ(field.change[i], 0);
     for (const Plane<float>& moment : field.moment) EXPECT_EQ(moment[i], 0);

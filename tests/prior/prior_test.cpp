@@ -14,7 +14,7 @@
 
 #include "estimators/bitmask/request.h"
 #include "estimators/guessed.h"
-#include "filters/shares.h"
+#include "filters/light_visibility.h"
 #include "parallel/task_order.h"
 #include "parallel/tiles.h"
 #include "prior/inputs.h"
@@ -81,7 +81,7 @@ Found find(const Scene& scene, const std::optional<glm::vec3>& up, float radius 
     noisy.ao = std::move(whole);
   }
   const Filter& filter = find_filter("geometry");
-  found.ao = filter_shares(filter, std::move(noisy), scene, 8, [&](Products& products) {
+  found.ao = filter_visibility(filter, std::move(noisy), scene, 8, [&](Products& products) {
                found.rules = products.ao;
                apply_prior(found.field, scene, products);
              }).ao;
@@ -177,23 +177,24 @@ TEST(Prior, ChangesLittleWithALittleStepOfTheCamera) {
   for (const double step : {1e-2, 1e-3, 1e-4}) {
     const Found moved = find(room_seen(eye(step)), up_of(scene));
     const double by_rules = mean_step(found.rules, moved.rules);
-    EXPECT_LT(mean_step(found.field.lean, moved.field.lean), 3 * by_rules + 1e-4) << step;
+    EXPECT_LT(mean_step(found.field.visibility_bias, moved.field.visibility_bias),
+              3 * by_rules + 1e-4)
+        << step;
     EXPECT_LT(mean_step(found.ao, moved.ao), 2 * by_rules + 1e-4) << step;
   }
 }
 
-TEST(Squares, TogetherHaveTheMembersOfThePattern) {
+TEST(PriorGrid, TogetherHaveTheMembersOfThePattern) {
   for (const int width : {480, 720, 1920}) {
     Geometry geometry;
     geometry.window = geometry.display = {0, 0, width, 64};
     geometry.surfaces = Surfaces(width, 64, {{0, 0, -1}, {0, 0, 1}, 0});
-    const Squares squares = make_squares(geometry, geometry.window);
-    EXPECT_EQ(squares.step, width / 480 > 1 ? 4 : width == 720 ? 2 : 1);
+    const PriorGrid grid = make_prior_grid(geometry, geometry.window);
+    EXPECT_EQ(grid.step, width / 480 > 1 ? 4 : width == 720 ? 2 : 1);
     std::set<std::pair<int, int>> members;
     for (int y = 0; y < 8; ++y)
       for (int x = 0; x < 8; ++x)
-        members.emplace(squares.pixel(3 + x, 1 + y) % width % 8,
-                        squares.pixel(3 + x, 1 + y) / width % 8);
+        members.emplace(grid.pixel(3 + x, 1 + y) % width % 8, grid.pixel(3 + x, 1 + y) / width % 8);
     EXPECT_EQ(members.size(), 64u) << width;
   }
 }

@@ -11,7 +11,7 @@
 #include "estimators/bitmask/request.h"
 #include "plan/make_plan.h"
 #include "relight/estimate.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 #include "scene/light/painted_map.h"
 #include "support/error_matchers.h"
 #include "support/estimate_light.h"
@@ -50,7 +50,7 @@ Scene room() {
 
 /// The same with one lamp alone.
 Scene with_only(Scene scene, const std::string& name) {
-  for (NamedLight& light : lights_of(scene.light))
+  for (LightGroup& light : light_groups_of(scene.light))
     if (light.name == name) scene.light = std::move(light.light);
   return scene;
 }
@@ -61,8 +61,8 @@ Plan plan_of(const Scene& scene, const std::string& method, bool per_light,
   model.method = method;
   model.filter = filter;
   model.bounces = bounces;
-  const Takes& takes = find_method(method).takes;
-  if (takes.radius && !takes.endless_radius) model.radius = 0.5;
+  const SupportedOptions& supports = find_method(method).supports;
+  if (supports.radius && !supports.infinite_radius) model.radius = 0.5;
   if (find_method(method).is_reference) model.set = {"samples=16"};
   OutputOptions output;
   output.products = {"direct", "unshadowed", "shadow"};
@@ -96,7 +96,7 @@ TEST(LightLayers, AddUpToTheLightOfAllWhichStaysAsItIs) {
   const Scene scene = room();
   for (const Method& method : methods()) {
     // Methods without solids refuse lamps.
-    if (!method.products.direct || !method.takes.thickness) continue;
+    if (!method.products.direct || !method.supports.thickness) continue;
     for (const char* filter : {"geometry", "none", "box"}) {
       SCOPED_TRACE(std::string(method.name) + " " + filter);
       const Products
@@ -139,13 +139,13 @@ TEST(LightLayers, RaysGoToTheSendersThatAreBrightInTheLightOfAll) {
   const Scene scene = room();
   Request request = plan_of(scene, "bitmask", true).request;
   const Products found = find_method("bitmask").estimate(scene, request, {});
-  ASSERT_FALSE(found.shares.emitted.empty()) << "the test needs bright senders";
+  ASSERT_FALSE(found.visibility.emitted.empty()) << "the test needs bright senders";
   ASSERT_EQ(found.lights.size(), 3u);
   Plane<glm::vec3> sum(kWindow.width(), kWindow.height(), glm::vec3(0));
   for (const LightProducts& light : found.lights)
     for (std::size_t i = 0; i < light.emitted.size(); ++i) sum[i] += light.emitted[i];
-  EXPECT_LT(difference(sum, found.shares.emitted), 1e-4);
-  EXPECT_LT(difference(found.lights[2].emitted, found.shares.emitted), 0.3)
+  EXPECT_LT(difference(sum, found.visibility.emitted), 1e-4);
+  EXPECT_LT(difference(found.lights[2].emitted, found.visibility.emitted), 0.3)
       << "most of it is of the lamp at the wall";
 }
 
@@ -204,11 +204,11 @@ TEST(LightLayers, OfTheEnvironmentAreLeftOutWhereItIsNone) {
   for (const auto& source : scene.light.sources)
     if (!source->name.empty()) lamps.sources.push_back(source);
   scene.light = lamps;
-  const std::vector<NamedLight> lights = lights_of(scene.light);
+  const std::vector<LightGroup> lights = light_groups_of(scene.light);
   ASSERT_EQ(lights.size(), 2u);
   EXPECT_EQ(lights[0].name, "key");
-  EXPECT_THAT(lights[1].numbers, ElementsAre(1));
-  EXPECT_EQ(lights_of(Light()).at(0).name, "env") << "one light is always there";
+  EXPECT_THAT(lights[1].source_indices, ElementsAre(1));
+  EXPECT_EQ(light_groups_of(Light()).at(0).name, "env") << "one light is always there";
 }
 
 TEST(LightLayers, NeedNamesOfTheirOwnAndSendersThatAreLit) {
@@ -230,7 +230,7 @@ TEST(LightLayers, NeedNamesOfTheirOwnAndSendersThatAreLit) {
 TEST(LightLayers, ShadowTimesUnshadowedIsDirect) {
   const Scene scene = room();
   for (const Method& method : methods()) {
-    if (!method.products.direct || !method.takes.thickness) continue;
+    if (!method.products.direct || !method.supports.thickness) continue;
     const Plan plan = plan_of(scene, std::string(method.name), true, "geometry", 0);
     const Products found = run(scene, plan).products;
     for (const int factor : {1, 4}) {

@@ -53,8 +53,8 @@ Products random_products(const Geometry& g, unsigned seed) {
         for (auto& value : plane.pixels) value = random_value(random, product.kind, value);
       },
       products);
-  products.shares.suns.resize(2);
-  for_each_share(
+  products.visibility.sources.resize(2);
+  for_each_visibility(
       [&](auto& plane) {
         plane = std::decay_t<decltype(plane)>::like(g.surfaces);
         for (auto& value : plane.pixels) value = random_value(random, ProductKind::light, value);

@@ -177,19 +177,19 @@ std::vector<std::string> random_settings(RandomNumbers& random, const Method& me
 }
 
 void draw_march(RandomNumbers& random, ModelOptions& model, const Method& method, double width) {
-  if (method.takes.march) {
+  if (method.supports.march) {
     model.quality = random.one_of({Quality::draft, Quality::standard});
     if (random.chance(0.4)) model.slices = random.whole(1, 5);
     if (random.chance(0.4)) model.steps = random.whole(1, 20);
     model.extend_offscreen = random.chance(0.7);
     if (random.chance(0.01)) model.error = random.by_ratio(0.02, 1);
   }
-  if (method.takes.radius && random.chance(0.6)) {
+  if (method.supports.radius && random.chance(0.6)) {
     model.radius = width * random.by_ratio(0.02, 3);
     if (random.chance(0.1)) model.radius = random.one_of({1e-30, 1e-3, 1e4, 1e30}) * width;
-    if (random.chance(0.1) && method.takes.endless_radius) model.radius = kInfinity;
+    if (random.chance(0.1) && method.supports.infinite_radius) model.radius = kInfinity;
   }
-  if (method.takes.thickness && random.chance(0.5))
+  if (method.supports.thickness && random.chance(0.5))
     model.thickness = random.chance(0.3) ? kInfinity : width * random.by_ratio(1e-4, 3);
 }
 
@@ -204,7 +204,7 @@ void draw_model(RandomNumbers& random, RandomShot& shot) {
   model.bounces = random.chance(0.5) ? 1 : random.whole(0, 8);
   model.seed = unsigned(random.bits() % 1000);
   const auto filter = std::size_t(random.whole(0, int(filters().size())));
-  model.filter = filter < filters().size() ? filters()[filter].name : kSourceFilter;
+  model.filter = filter < filters().size() ? filters()[filter].name : kPublishedFilter;
   OutputOptions& output = shot.options.output;
   if (random.chance(0.3)) output.products = {std::string(kAllProducts)};
   output.pixel_type = random.one_of({Imf::HALF, Imf::FLOAT});

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/shares.h"
+#include "filters/light_visibility.h"
 #include "io/exr/exr_reader.h"
 #include "relight/frame.h"
 #include "relight/relight.h"
@@ -33,8 +33,8 @@ Plane<glm::vec3> found(const std::string& roughness, const std::string& environm
   request.products.bounce = false, request.bounces = 0;
   const Method& method = *frame.plan.method;
   geometry = frame.scene.geometry;
-  return filter_shares(*frame.plan.filter, method.estimate(frame.scene, request, {}), frame.scene,
-                       method.pattern_size)
+  return filter_visibility(*frame.plan.filter, method.estimate(frame.scene, request, {}),
+                           frame.scene, method.pattern_size)
       .specular;
 }
 

@@ -153,7 +153,7 @@ Result run(const std::string& method, const Subject& scene, const LightOptions& 
   FrameOptions options;
   options.model.method = method;
   if (method == "trace") options.model.set = {"samples=16"};
-  if (find_method(method).takes.radius) options.model.radius = radius;
+  if (find_method(method).supports.radius) options.model.radius = radius;
   options.light = light;
   OtherPictures pictures;
   Frame frame =

@@ -36,7 +36,7 @@ const std::map<std::string, Completion>& named_values() {
       {"--method", {"words", names_of(methods())}},
       {"--methods", {"list", names_of(methods())}},
       {"--set", {"parameters", {}}},
-      {"--filter", {"words", names_of(filters(), kSourceFilter)}},
+      {"--filter", {"words", names_of(filters(), kPublishedFilter)}},
       {"--products", {"list", names_of(kProducts, kAllProducts)}},
       {"--save", {"keys", names_of(kProducts)}},
       {"--aov", {"layers", roles()}},

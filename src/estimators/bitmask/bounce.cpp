@@ -80,7 +80,7 @@ HWY_INLINE V3 without_emitted(const BounceJob& job, const MarchReceiver& p, cons
   const V light = luminance(of_all), above = light - set(job.emitters->level);
   // An endless solid has no back that rays go to.
   const V thickness = load(met.planes.layers.front().thickness, met.q);
-  const M ends = thickness < set(kOrthographic ? kEndlessLength : kEndlessShare),
+  const M ends = thickness < set(kOrthographic ? kInfiniteThickness : kInfiniteThicknessRatio),
           exceeds = hn::And(above > set(0), hn::Or(seen, ends));
   if (!any(exceeds)) return sent;
   const V3 way = way_to<kOrthographic>(scene, p, met);
@@ -92,7 +92,7 @@ HWY_INLINE V3 without_emitted(const BounceJob& job, const MarchReceiver& p, cons
 /// The pixels of the overview that stand for pixels of the raster.
 HWY_INLINE OverviewPixels in_overview(const BounceJob& job, const OverviewPixels& at) {
   const MarchScene& scene = job.march.scene;
-  const FarRaster& far = job.overview->raster;
+  const OverviewRaster& far = job.overview->raster;
   const auto block = [](VI pixel, int first, int far_first, int size) HWY_ATTR {
     const VI of_frame = hn::ShiftRight<Interleaving::kShift>(pixel + set_int(first));
     return hn::Clamp(of_frame - set_int(far_first), set_int(0), set_int(size - 1));
@@ -120,7 +120,8 @@ HWY_INLINE M sees_front(const MarchScene& scene, const InterleavedPlane& tilts, 
           axis_y = set(scene.axis_y - float(scene.first_y));
   const V2 slope{(hn::ConvertTo(D(), at.x) - axis_x) * set(1 / scene.fx),
                  (axis_y - hn::ConvertTo(D(), at.y)) * set(1 / scene.fy)};
-  const V3 normal = normal_of_tilt(scene, {first_of_two(tilt), second_of_two(tilt)}, slope);
+  const V3 normal =
+      normal_of_tilt(scene, {unpack_bf16_first(tilt), unpack_bf16_second(tilt)}, slope);
   return dot(normal, way) < set(0);
 }
 

@@ -10,9 +10,9 @@
 namespace ssdo {
 namespace {
 
-/// A light that is followed, or all of them as one.
-struct Followed {
-  NamedLight light;
+/// A light as it bounces, or all of them as one.
+struct BounceState {
+  LightGroup light;
   std::vector<OtherViewLight> sent_by_others;  ///< by pass
   BouncedLight found = {};                     ///< in the pass before
   glm::vec3 from_afar{1};  ///< share of what surfaces send in the first pass; see only_from_afar()
@@ -21,14 +21,14 @@ struct Followed {
 /// The light without the lamps that stand in the scene. Lamps light what is near them, and surfaces
 /// that are not shown need not be near: a learned prior would turn a street with one spot into a
 /// street that is lit everywhere.
-NamedLight only_from_afar(const NamedLight& light) {
-  NamedLight afar = light;
-  afar.light.sources.clear(), afar.numbers.clear();
-  for (std::size_t k = 0; k < light.numbers.size(); ++k) {
+LightGroup only_from_afar(const LightGroup& light) {
+  LightGroup afar = light;
+  afar.light.sources.clear(), afar.source_indices.clear();
+  for (std::size_t k = 0; k < light.source_indices.size(); ++k) {
     const auto& source = light.light.sources[k];
     if (!source->distant() && !source->distant_lamp()) continue;
     afar.light.sources.push_back(source);
-    afar.numbers.push_back(light.numbers[k]);
+    afar.source_indices.push_back(light.source_indices[k]);
   }
   return afar;
 }
@@ -40,7 +40,7 @@ struct Pass {
   Window to;                         ///< the pixels that gather
   const InterleavedVectors& of_all;  ///< what all lights together send
   const Emitters& emitters;          ///< chosen by `of_all`
-  const FarLight* far_of_all;
+  const OverviewLight* far_of_all;
   GatheredLight& gathered;
 };
 
@@ -75,9 +75,10 @@ class BouncePasses {
         times_sent_(times_sent(scene_, request_)),
         is_lit_(scene_.senders.radiance.empty()),
         two_sided_(sends_two_sided(scene_)),
-        all_(follow(as_one_light(scene_.light))) {
+        all_(start_state(as_one_group(scene_.light))) {
     if (!request_.by_light.bounce) return;
-    for (NamedLight& light : lights_of(scene_.light)) each_.push_back(follow(std::move(light)));
+    for (LightGroup& light : light_groups_of(scene_.light))
+      each_.push_back(start_state(std::move(light)));
   }
 
   BouncedLights run() {
@@ -86,19 +87,19 @@ class BouncePasses {
       out.error = InterleavedPlane(march_scene_.layout);
     for (int pass = 1; pass <= request_.bounces; ++pass) run(pass, out);
     out.all = std::move(all_.found);
-    for (Followed& light : each_) out.each.push_back(std::move(light.found));
+    for (BounceState& light : each_) out.each.push_back(std::move(light.found));
     return out;
   }
 
  private:
-  Followed follow(NamedLight light) const {
-    Followed followed{std::move(light), {}};
+  BounceState start_state(LightGroup light) const {
+    BounceState state{std::move(light), {}};
     if (request_.bounces == 0)
-      followed.found.bounce = in_.raster.black();
+      state.found.bounce = in_.raster.black();
     else if (in_.march.other_views)
-      followed.sent_by_others =
-          light_other_surfaces(scene_, followed.light, request_.bounces - 1, request_.radius);
-    return followed;
+      state.sent_by_others =
+          light_other_surfaces(scene_, state.light, request_.bounces - 1, request_.radius);
+    return state;
   }
 
   void run(int number, BouncedLights& out) {
@@ -111,23 +112,24 @@ class BouncePasses {
             ? with_senders(march_scene_, request_, march_scene_.receivers, times_sent_ - number)
             : march_scene_.receivers;
     InterleavedVectors sent = sent_light(lit, all_, number);
-    const FarLight* far_light = overview_ ? &overview_->light[std::size_t(number - 1)] : nullptr;
+    const OverviewLight* overview_light =
+        overview_ ? &overview_->light[std::size_t(number - 1)] : nullptr;
     const Emitters emitters = find_emitters(
-        {march_scene_, sent, two_sided_, lit, in_.march.far, far_light}, request_.seed);
+        {march_scene_, sent, two_sided_, lit, in_.march.far, overview_light}, request_.seed);
     const bool wants_error = request_.products.error && number == request_.bounces;
     GatheredLight gathered(in_.march, wants_error);
-    const Pass pass{number, lit, to, sent, emitters, far_light, gathered};
-    std::vector<FarLight> kept;
+    const Pass pass{number, lit, to, sent, emitters, overview_light, gathered};
+    std::vector<OverviewLight> kept;
     for (std::size_t k = 0; k < each_.size(); ++k) {
       InterleavedVectors of_light = sent_light(lit, each_[k], number);
-      const FarLight* far_of_light = far_light ? &far_light->lights[k] : nullptr;
+      const OverviewLight* far_of_light = overview_light ? &overview_light->lights[k] : nullptr;
       const Emitters points = emitters_of_light(emitters, of_light, two_sided_, far_of_light);
-      FarLight far = gather(each_[k], of_light, pass, far_of_light, points, nullptr);
+      OverviewLight far = gather(each_[k], of_light, pass, far_of_light, points, nullptr);
       if (in_.keep_in) kept.push_back(std::move(far));
       each_[k].found.bounce = std::move(of_light);
     }
-    FarLight far =
-        gather(all_, sent, pass, far_light, emitters, wants_error ? &out.error : nullptr);
+    OverviewLight far =
+        gather(all_, sent, pass, overview_light, emitters, wants_error ? &out.error : nullptr);
     if (in_.keep_in) {
       far.lights = std::move(kept);
       out.kept.push_back(std::move(far));
@@ -136,12 +138,12 @@ class BouncePasses {
   }
 
   /// Given the bounce of the pass before.
-  InterleavedVectors sent_light(const Window& part, const Followed& light, int pass) const {
+  InterleavedVectors sent_light(const Window& part, const BounceState& light, int pass) const {
     return ssdo::sent_light(in_, light.light, part, pass > 1 ? &light.found : nullptr);
   }
 
   /// The mean radiance that surfaces send, of the light that comes from afar.
-  glm::vec3 sent_by_unshown(Followed& light, const InterleavedVectors& sent,
+  glm::vec3 sent_by_unshown(BounceState& light, const InterleavedVectors& sent,
                             const Pass& pass) const {
     const auto mean = [&](const InterleavedVectors& of) {
       return mean_sent(march_scene_, scene_.geometry,
@@ -149,8 +151,8 @@ class BouncePasses {
     };
     const glm::vec3 all = mean(sent);
     if (pass.number == 1 && is_lit_) {
-      const NamedLight afar = only_from_afar(light.light);
-      if (afar.numbers.size() < light.light.numbers.size()) {
+      const LightGroup afar = only_from_afar(light.light);
+      if (afar.source_indices.size() < light.light.source_indices.size()) {
         const glm::vec3 part = mean(ssdo::sent_light(in_, afar, pass.lit, nullptr));
         for (int c = 0; c < 3; ++c) light.from_afar[c] = all[c] > 0 ? part[c] / all[c] : 0;
       }
@@ -160,20 +162,21 @@ class BouncePasses {
 
   /// Replaces the sent light by the light that arrives. Returns what bands need of the sent light,
   /// if `keep_in` is set. `points`: targets of rays, with this light. `error` may be null.
-  FarLight gather(Followed& light, InterleavedVectors& sent, const Pass& pass,
-                  const FarLight* far_light, const Emitters& points, InterleavedPlane* error) {
+  OverviewLight gather(BounceState& light, InterleavedVectors& sent, const Pass& pass,
+                       const OverviewLight* overview_light, const Emitters& points,
+                       InterleavedPlane* error) {
     if (request_.ask_prior)
-      light.found.sent = far_light ? far_light->mean : sent_by_unshown(light, sent, pass);
+      light.found.sent = overview_light ? overview_light->mean : sent_by_unshown(light, sent, pass);
     const std::array<BorderValues, 3> border =
         light_beyond(march_scene_, sent, pass.of_all, two_sided_, pass.emitters.bright);
-    FarLight kept{{}, {}, pass.emitters.bright, pass.emitters.level, light.found.sent};
+    OverviewLight kept{{}, {}, pass.emitters.bright, pass.emitters.level, light.found.sent};
     if (in_.keep_in) kept.sent = in_.raster.in_whole_rows(sent, *in_.keep_in), kept.border = border;
     const Emitters* const bright = pass.emitters.points.empty() ? nullptr : &pass.emitters;
     const OtherViewLight* const from_others =
         in_.march.other_views ? &light.sent_by_others[std::size_t(pass.number - 1)] : nullptr;
-    const BounceJob job{in_.march,     &in_.ao,         &sent,       &pass.of_all,   two_sided_,
-                        scene_.solids, border.data(),   from_others, pass.lit,       overview_,
-                        far_light,     pass.far_of_all, bright,      &pass.gathered, error};
+    const BounceJob job{in_.march,      &in_.ao,         &sent,       &pass.of_all,   two_sided_,
+                        scene_.solids,  border.data(),   from_others, pass.lit,       overview_,
+                        overview_light, pass.far_of_all, bright,      &pass.gathered, error};
     for_each_band_of(
         grown(march_scene_.layout, pass.to, in_.march.pattern.spacing() - 1),
         [&](const Window& part) { march_bounce(job, part); }, in_.progress);
@@ -199,12 +202,12 @@ class BouncePasses {
   const Scene& scene_;
   const Request& request_;
   const MarchScene& march_scene_;
-  const FarScene* overview_;
+  const OverviewScene* overview_;
   const int times_sent_;
   const bool is_lit_;  ///< what is sent is found, not given
   const bool two_sided_;
-  Followed all_;
-  std::vector<Followed> each_;
+  BounceState all_;
+  std::vector<BounceState> each_;
 };
 
 }  // namespace
@@ -243,19 +246,19 @@ bool sends_two_sided(const Scene& scene) {
   return scene.senders.radiance.empty() && !scene.light.is_constant();
 }
 
-InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& light,
+InterleavedVectors sent_light(const BounceInputs& inputs, const LightGroup& light,
                               const Window& part, const BouncedLight* before) {
   const Scene& scene = inputs.scene;
   // The sent radiance may be given as a layer.
   if (!scene.senders.radiance.empty()) {
     InterleavedVectors given = inputs.raster.interleaved(scene.senders.radiance);
-    if (scene.casting)
-      send_from_hole(inputs.raster, scene.geometry.surfaces, scene.casting->sender, given);
+    if (scene.caster_surfaces)
+      send_from_hole(inputs.raster, scene.geometry.surfaces, scene.caster_surfaces->sender, given);
     return given;
   }
   InterleavedVectors sent = inputs.raster.make_color();
   const SenderJob senders{inputs.march.scene,
-                          shares_of(light, inputs.ao, inputs.sky, inputs.sources),
+                          visibility_of(light, inputs.ao, inputs.sky, inputs.sources),
                           scene.senders.albedo,
                           before ? &before->bounce : nullptr,
                           inputs.change,
@@ -263,8 +266,8 @@ InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& ligh
                           &sent,
                           sends_two_sided(scene)};
   for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
-  if (scene.casting)
-    send_from_hole(inputs.raster, scene.geometry.surfaces, scene.casting->sender, sent);
+  if (scene.caster_surfaces)
+    send_from_hole(inputs.raster, scene.geometry.surfaces, scene.caster_surfaces->sender, sent);
   return sent;
 }
 
@@ -276,10 +279,11 @@ Window with_senders(const MarchScene& scene, const Request& request, const Windo
   return intersection(raster, {raster.x0, part.y0 - rows, raster.x1, part.y1 + rows});
 }
 
-FoundShares shares_of(const NamedLight& light, const InterleavedPlane& ao,
-                      const InterleavedColorShares* sky, const std::vector<SourceShares>& sources) {
-  FoundShares found{light.light, &ao, sky, {}};
-  for (const std::size_t number : light.numbers) found.sources.push_back(&sources[number]);
+InterleavedVisibility visibility_of(const LightGroup& light, const InterleavedPlane& ao,
+                                    const InterleavedColorRatios* sky,
+                                    const std::vector<SourceVisibility>& sources) {
+  InterleavedVisibility found{light.light, &ao, sky, {}};
+  for (const std::size_t number : light.source_indices) found.sources.push_back(&sources[number]);
   return found;
 }
 

@@ -6,7 +6,7 @@
 // the same slices, masks and rays, and its next pass is lit by its own. Two things depend on how
 // bright a sender is, and are decided by all lights together: what rays gather in place of the
 // march (rays/emitters.h), and what goes on beyond the border (border/border_light.h). So the sum
-// over the lights is the light of all, up to the rounding of two_in_one(), which make_add_up()
+// over the lights is the light of all, up to the rounding of pack_bf16x2(), which make_add_up()
 // takes out.
 #pragma once
 
@@ -15,7 +15,7 @@
 #include "estimators/bitmask/jobs.h"
 #include "estimators/bitmask/raster.h"
 #include "estimators/estimator.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 #include "scene/scene.h"
 
 namespace ssdo {
@@ -28,10 +28,11 @@ struct BounceInputs {
   const Raster& raster;
   const March& march;
   const InterleavedPlane& ao;
-  const InterleavedColorShares* sky;  ///< as FoundShares has it
-  const std::vector<SourceShares>& sources;
+  const InterleavedColorRatios* sky;  ///< as InterleavedVisibility has it
+  const std::vector<SourceVisibility>& sources;
   const InterleavedPlane* change;  ///< as SenderJob has it
-  const FarRaster* keep_in;  ///< the order in which bands of the frame need what is sent; or null
+  const OverviewRaster*
+      keep_in;  ///< the order in which bands of the frame need what is sent; or null
 };
 
 /// What has arrived after the last pass.
@@ -43,15 +44,15 @@ struct BouncedLight {
 
 struct BouncedLights {
   BouncedLight all;
-  std::vector<BouncedLight> each;  ///< where Request::by_light asks for it
-  InterleavedPlane error;          ///< of all; empty where it is not wanted
-  std::vector<FarLight> kept;      ///< what was sent, by pass, where `keep_in` asks for it
+  std::vector<BouncedLight> each;   ///< where Request::by_light asks for it
+  InterleavedPlane error;           ///< of all; empty where it is not wanted
+  std::vector<OverviewLight> kept;  ///< what was sent, by pass, where `keep_in` asks for it
 };
 
 BouncedLights gather_bounces(const BounceInputs& inputs);
 
 /// Scales the planes of lights, of one size or empty, so that their sum becomes `of_all`: senders
-/// are rounded light by light (two_in_one()).
+/// are rounded light by light (pack_bf16x2()).
 void make_add_up(std::vector<LightProducts>& lights, Plane<glm::vec3> LightProducts::*plane,
                  const Plane<glm::vec3>& of_all);
 
@@ -66,15 +67,16 @@ bool sends_two_sided(const Scene& scene);
 
 /// The radiance that pixels of a part of the raster send of one light, or of all, as SenderJob has
 /// it. `before`: what has arrived of it so far; null: none.
-InterleavedVectors sent_light(const BounceInputs& inputs, const NamedLight& light,
+InterleavedVectors sent_light(const BounceInputs& inputs, const LightGroup& light,
                               const Window& part, const BouncedLight* before);
 
 /// A part of the raster with what may send light to it in so many bounces.
 Window with_senders(const MarchScene& scene, const Request& request, const Window& part,
                     int bounces);
 
-/// What arrives of one light, or of all. `sky` as FoundShares has it.
-FoundShares shares_of(const NamedLight& light, const InterleavedPlane& ao,
-                      const InterleavedColorShares* sky, const std::vector<SourceShares>& sources);
+/// What arrives of one light, or of all. `sky` as InterleavedVisibility has it.
+InterleavedVisibility visibility_of(const LightGroup& light, const InterleavedPlane& ao,
+                                    const InterleavedColorRatios* sky,
+                                    const std::vector<SourceVisibility>& sources);
 
 }  // namespace ssdo

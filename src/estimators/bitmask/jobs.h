@@ -4,7 +4,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "estimators/bitmask/border/pass_beyond.h"
+#include "estimators/bitmask/border/offscreen_visibility.h"
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/rays/emitters.h"
 #include "estimators/bitmask/rays/ray_pattern.h"
@@ -31,7 +31,7 @@ struct VisibilityJob {
   InterleavedVectors* bent = nullptr;   ///< unit; null: not wanted
   /// The share of the light that arrives, less ao, by channel: 0, without rounding, for light of
   /// one colour that is the same from everywhere. Null: not wanted.
-  InterleavedColorShares* sky_share = nullptr;
+  InterleavedColorRatios* sky_share = nullptr;
   InterleavedPlane* difference =
       nullptr;  ///< standard error of the direct light's luminance, signed; null: not wanted
 };
@@ -40,36 +40,36 @@ struct VisibilityJob {
 inline constexpr float kPenumbraUnit = 8;
 
 /// What rays to a source have found. `share`: the share of the source's light that arrives, about
-/// 0..1, as if it met any normal; `weight` and `width`: as in ShadowDraw, with widths over
+/// 0..1, as if it met any normal; `weight` and `width`: as in ShadowSample, with widths over
 /// kPenumbraUnit.
-struct SourceShares {
-  explicit SourceShares(const Interleaving& layout)
+struct SourceVisibility {
+  explicit SourceVisibility(const Interleaving& layout)
       : share(layout), weight(layout), width(layout) {}
 
-  InterleavedShares share, weight, width;
-  InterleavedShares unseen = {};  ///< what arrives at the sides that the camera does not see, as
+  InterleavedRatios share, weight, width;
+  InterleavedRatios unseen = {};  ///< what arrives at the sides that the camera does not see, as
                                   ///< `share`; empty: their share of this source is that of the sky
 };
 
-/// How much of the light arrives at each pixel, as LightShares has it.
-struct FoundShares {
+/// How much of the light arrives at each pixel, as LightVisibility has it.
+struct InterleavedVisibility {
   const Light& light;
   const InterleavedPlane* ao;
-  const InterleavedColorShares* sky;  ///< as VisibilityJob has it; null: ao is the share of all
+  const InterleavedColorRatios* sky;  ///< as VisibilityJob has it; null: ao is the share of all
                                       ///< light
-  std::vector<const SourceShares*> sources;  ///< as in `light`
+  std::vector<const SourceVisibility*> sources;  ///< as in `light`
 };
 
 /// The radiance that each pixel sends to others, and that of its back side.
 struct SenderJob {
   const MarchScene& scene;
-  FoundShares found;
+  InterleavedVisibility found;
   const Plane<HalfColor>& albedo;
   const InterleavedVectors* bounce;  ///< that has arrived so far; null: none
   const InterleavedPlane* change;    ///< of ao, as LearnedVisibility has it; null: none
   glm::vec3 sent_before;             ///< the mean radiance that has given the bounce
   InterleavedVectors* sent;
-  bool two_sided;  ///< `sent` holds front and back, as two_in_one(); else they send the same
+  bool two_sided;  ///< `sent` holds front and back, as pack_bf16x2(); else they send the same
 };
 
 /// What the pixels that march have gathered.
@@ -102,9 +102,9 @@ struct BounceJob {
   const BorderValues* sent_border;       ///< three: of surfaces that continue beyond the frame
   const OtherViewLight* sent_by_others;  ///< of what only other views show
   Window lit;                            ///< the pixels of the raster whose `sent` is known
-  const FarScene* overview;              ///< gives the light of the others; null: all are lit
-  const FarLight* far;                   ///< what the overview sends
-  const FarLight* far_of_all;            ///< the same as `of_all`
+  const OverviewScene* overview;         ///< gives the light of the others; null: all are lit
+  const OverviewLight* far;              ///< what the overview sends
+  const OverviewLight* far_of_all;       ///< the same as `of_all`
   const Emitters* emitters;              ///< whose light rays gather; null: there are none
 
   GatheredLight* gathered;
@@ -127,7 +127,7 @@ struct EmittedJob {
 /// The direct light of each pixel.
 struct DirectJob {
   const MarchScene& scene;
-  FoundShares found;
+  InterleavedVisibility found;
   InterleavedVectors* direct;
 };
 
@@ -137,13 +137,14 @@ struct SourceJob {
   const std::vector<DepthBounds>& bounds;
   const std::vector<PointsOfSource>& points;  ///< that each ray goes to
   const Source& source;
-  PassBeyond pass;
-  const InterleavedPlane* past = nullptr;  ///< by pixel, where pass.past is 0; null: of none
-  /// If set, SourceShares::unseen is found, for the solids of this raster, which may differ from
-  /// what blocks the light; null: the other members are found.
+  OffscreenVisibility offscreen;
+  const InterleavedPlane* unblocked =
+      nullptr;  ///< by pixel, where pass.unblocked is 0; null: of none
+  /// If set, SourceVisibility::unseen is found, for the solids of this raster, which may differ
+  /// from what blocks the light; null: the other members are found.
   const MarchScene* unseen_of = nullptr;
-  bool together = true;  ///< as Walk::run(): the same to the bit, and slower without
-  SourceShares* found = nullptr;
+  bool together = true;  ///< as RayTraversal::run(): the same to the bit, and slower without
+  SourceVisibility* found = nullptr;
 };
 
 /// The light that rough surfaces mirror.

@@ -16,11 +16,11 @@
 #include "estimators/bitmask/jobs.h"
 #include "estimators/bitmask/slice_sectors.h"
 #include "estimators/receiver-inl.h"
-#include "math/endless.h"
+#include "math/infinity.h"
 #include "scene/same_surface-inl.h"
+#include "simd/bf16x2-inl.h"
+#include "simd/fixed_ratio16-inl.h"
 #include "simd/lanes-inl.h"
-#include "simd/share16-inl.h"
-#include "simd/two_in_one-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -69,10 +69,10 @@ HWY_INLINE void store(const V3& value, std::array<InterleavedValues<T>, 3>& colo
 
 /// Both sides of a surface, from what they send.
 HWY_INLINE V3 front_of(const V3& sides) {
-  return {first_of_two(sides.x), first_of_two(sides.y), first_of_two(sides.z)};
+  return {unpack_bf16_first(sides.x), unpack_bf16_first(sides.y), unpack_bf16_first(sides.z)};
 }
 HWY_INLINE V3 back_of(const V3& sides) {
-  return {second_of_two(sides.x), second_of_two(sides.y), second_of_two(sides.z)};
+  return {unpack_bf16_second(sides.x), unpack_bf16_second(sides.y), unpack_bf16_second(sides.z)};
 }
 
 /// holds_solid() of march_scene.h for a vector of depths: false where the depth is NaN.
@@ -143,7 +143,7 @@ HWY_INLINE V3 normal_of_tilt(const MarchScene& scene, const V2& tilt, const V2& 
 /// The unit normals of tangent planes at index `q` of a tilt and its rest, as MarchPlanes has them.
 HWY_INLINE V3 load_normal(const MarchScene& scene, const InterleavedPlane& tilts,
                           const InterleavedPlane& rests, std::ptrdiff_t q, const V2& slope) {
-  const V2 tilt = with_rest(load(tilts, q), load(rests, q));
+  const V2 tilt = unpack_bf16x2_exact(load(tilts, q), load(rests, q));
   const V3 normal = normal_of_tilt(scene, tilt, slope);
   return normal * (set(1) / hn::Sqrt(dot(normal, normal)));
 }
@@ -204,7 +204,7 @@ HWY_INLINE V3 usable(const V3& normals, M valid) {
 /// in the units of MarchPlanes::tilt.
 HWY_INLINE V nearer_over(const MarchPlanes& planes, std::ptrdiff_t q, const SliceStep& step) {
   const V tilt = load(planes.tilt, q);
-  return dot(V2{first_of_two(tilt), second_of_two(tilt)}, V2{set(step.dx), set(step.dy)});
+  return dot(V2{unpack_bf16_first(tilt), unpack_bf16_second(tilt)}, V2{set(step.dx), set(step.dy)});
 }
 
 /// Height above the receiver's tangent plane, along V, of a surface at `depth`. `rise` is that of
@@ -228,7 +228,8 @@ HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrd
   const V3 to_q = V3{x, y, set(0) - depth} - p.position;
   const M near = within_sine(dot(to_q, p.normal), dot(to_q, to_q), kPlaneSine);
   const V both = load(scene.receiver_tilt(), q);
-  const V3 normal = normal_of_tilt(scene, {first_of_two(both), second_of_two(both)}, slope);
+  const V3 normal =
+      normal_of_tilt(scene, {unpack_bf16_first(both), unpack_bf16_second(both)}, slope);
   const V cosine = dot(p.normal, normal) * reciprocal_sqrt(dot(normal, normal));
   return hn::IfThenElseZero(hn::And(valid, near), normal_weight(cosine));
 }
@@ -238,7 +239,7 @@ HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrd
 /// of d e / (l + e), with d the receiver's distance and l the length of its ray per unit of depth.
 HWY_INLINE float reach_px(const MarchScene& scene, const MarchReceiver& p, float radius) {
   const float f = scene.fx > scene.fy ? scene.fx : scene.fy;
-  if (scene.orthographic || radius > kEndless) return radius * f;
+  if (scene.orthographic || radius > kInfiniteLength) return radius * f;
   const V depth = set(0) - p.position.z, r = set(radius);
   const V slope = r * p.distance / (depth * (depth - r));
   const V reach = hn::IfThenElse(depth > r, slope, set(1e30f));

@@ -18,27 +18,28 @@
 namespace ssdo {
 
 /// What an overview sends in one pass of bounces.
-struct FarLight {
-  InterleavedVectors sent;  ///< in the order of FarRaster
+struct OverviewLight {
+  InterleavedVectors sent;  ///< in the order of OverviewRaster
   std::array<BorderValues, 3> border;
-  float bright, level;                ///< as Emitters has them, of the frame
-  glm::vec3 mean{0};                  ///< of `sent`, as BouncedLight has it
-  std::vector<FarLight> lights = {};  ///< each light's part of it, where the bounce is by light
+  float bright, level;  ///< as Emitters has them, of the frame
+  glm::vec3 mean{0};    ///< of `sent`, as BouncedLight has it
+  std::vector<OverviewLight> lights =
+      {};  ///< each light's part of it, where the bounce is by light
 };
 
 /// All of a frame as an overview shows it, for rasters that are a part of the frame.
-struct FarScene {
-  MarchScene scene;                  ///< of the overview, which is a raster like any other
-  FarRaster raster;                  ///< the order in which slices read it
-  MarchPlanes planes;                ///< those of `scene` in that order
-  std::vector<DepthBounds> bounds;   ///< by layer
-  const Solids& solids;              ///< of the overview
-  CutSurfaces cut;                   ///< by the border of the overview
-  Openness openness;                 ///< of the frame: see border/beyond.h
-  std::vector<FarLight> light = {};  ///< by pass
+struct OverviewScene {
+  MarchScene scene;                       ///< of the overview, which is a raster like any other
+  OverviewRaster raster;                  ///< the order in which slices read it
+  MarchPlanes planes;                     ///< those of `scene` in that order
+  std::vector<DepthBounds> bounds;        ///< by layer
+  const Solids& solids;                   ///< of the overview
+  CutSurfaces cut;                        ///< by the border of the overview
+  Enclosure enclosure;                    ///< of the frame: see border/beyond.h
+  std::vector<OverviewLight> light = {};  ///< by pass
   /// What blocks the light of lamps that name it, by their number in Light::sources. Rays alone
   /// read it: without `planes` and `light`.
-  std::map<std::size_t, std::shared_ptr<const FarScene>> blockers = {};
+  std::map<std::size_t, std::shared_ptr<const OverviewScene>> linked_occluders = {};
 };
 
 /// What all marches share.
@@ -49,9 +50,9 @@ struct March {
   bool extend;                                 ///< surfaces go on beyond the frame
   bool may_be_thin = false;                    ///< as may_be_thin() has it of the solids
   const OtherViewRays* other_views = nullptr;  ///< what only other views show; null: nothing
-  const FarScene* far = nullptr;  ///< where the raster is a part of a frame without its reach: what
-                                  ///< marches meet beyond far->raster.from_px
-  const CutSurfaces* cut = nullptr;  ///< what rays that leave the frame may meet; null: nothing
+  const OverviewScene* far = nullptr;  ///< where the raster is a part of a frame without its reach:
+                                       ///< what marches meet beyond far->raster.from_px
+  const CutSurfaces* cut = nullptr;    ///< what rays that leave the frame may meet; null: nothing
 };
 
 }  // namespace ssdo

@@ -37,7 +37,7 @@ class Cells {
   Cells(const Geometry& g, const MarchScene& scene)
       : g_(g),
         scene_(scene),
-        endless_(scene.orthographic ? kEndlessLength : kEndlessShare),
+        endless_(scene.orthographic ? kInfiniteThickness : kInfiniteThicknessRatio),
         per_px_(1 / scene.fx, -1 / scene.fy) {}
 
   /// `normal` is that of the surface.
@@ -105,7 +105,7 @@ glm::vec2 ray_slope(const MarchScene& scene, int x, int y) {
 
 glm::vec3 tangent_normal(const MarchScene& scene, int x, int y) {
   const std::ptrdiff_t i = scene.layout.index(x, y);
-  const glm::vec2 tilt = with_rest(scene.tilt[i], scene.tilt_rest[i]),
+  const glm::vec2 tilt = unpack_bf16x2_exact(scene.tilt[i], scene.tilt_rest[i]),
                   aside = tilt * glm::vec2(-scene.fx, scene.fy),
                   slope = scene.orthographic ? glm::vec2(0) : ray_slope(scene, x, y);
   return glm::normalize(glm::vec3(aside, 1 + glm::dot(aside, slope)));
@@ -202,7 +202,8 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
   const Cells cells(g, scene);
   for_each_cell(g, scene, cells, [&](std::ptrdiff_t i, int x, int y, const Cell& cell) {
     const glm::vec2 tilt = cells.tilt(cell);
-    scene.tilt[i] = two_in_one(tilt.x, tilt.y), scene.tilt_rest[i] = rest_of_two(tilt.x, tilt.y);
+    scene.tilt[i] = pack_bf16x2(tilt.x, tilt.y),
+    scene.tilt_rest[i] = pack_bf16x2_rest(tilt.x, tilt.y);
     for (int k = 0; k < solids.layers(); ++k) {
       const Span span =
           cell.is_surface() ? cells.span(cell, solids.at(k, g.surfaces.index(x, y))) : Span();
@@ -216,8 +217,8 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
     for_each_cell(*receiving, scene, own, [&](std::ptrdiff_t i, int, int, const Cell& cell) {
       const glm::vec2 tilt = own.tilt(cell);
       scene.own_depth[i] = cell.depth;
-      scene.own_tilt[i] = two_in_one(tilt.x, tilt.y);
-      scene.own_tilt_rest[i] = rest_of_two(tilt.x, tilt.y);
+      scene.own_tilt[i] = pack_bf16x2(tilt.x, tilt.y);
+      scene.own_tilt_rest[i] = pack_bf16x2_rest(tilt.x, tilt.y);
     });
   }
   scene.border_depth =
@@ -227,11 +228,11 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         scene.border.gather([&](int x, int y) { return tangent_normal(scene, x, y)[c]; });
   }
   scene.border_thickness = scene.border.gather([&](int x, int y) {
-    return std::min(solids.at(0, g.surfaces.index(x, y)).thickness, kEndlessLength);
+    return std::min(solids.at(0, g.surfaces.index(x, y)).thickness, kInfiniteThickness);
   });
   if (!solids.beyond.empty()) {
     scene.border_beyond = scene.border.gather(
-        [&](int x, int y) { return std::min(solids.beyond.at(x, y), kEndlessLength); });
+        [&](int x, int y) { return std::min(solids.beyond.at(x, y), kInfiniteThickness); });
   }
   return scene;
 }

@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "math/two_in_one.h"
+#include "math/bf16x2.h"
 #include "scene/geometry.h"
 #include "scene/solids/solids.h"
 #include "scene/surfaces.h"
@@ -16,7 +16,7 @@ namespace ssdo {
 
 /// What stands for an infinite thickness in the units of MarchLayer: seen from the receiver, its
 /// back is within 1e-4 of the direction of the view ray.
-constexpr float kEndlessShare = 1e4f, kEndlessLength = 1e15f;
+constexpr float kInfiniteThicknessRatio = 1e4f, kInfiniteThickness = 1e15f;
 
 /// Least cosine between a normal and the direction to the viewer, so that it can be divided by; a
 /// plane tilted by 89.9 degrees has 0.0017. Smooth normals that lean away farther are bent to this.
@@ -75,8 +75,8 @@ struct MarchPlanes {
   std::vector<MarchLayer> layers;  ///< near to far; layer 0 is what pixels show
   /// The tangent plane of layer 0: how much nearer it comes from a pixel to the next, to the right
   /// and to the bottom. Nearness is 1 / depth here, in units of that of the pixel, or -depth where
-  /// the camera is orthographic: it changes linearly. Marches read two_in_one(); with rest_of_two()
-  /// beside it the normal is known to the bit or two.
+  /// the camera is orthographic: it changes linearly. Marches read pack_bf16x2(); with
+  /// pack_bf16x2_rest() beside it the normal is known to the bit or two.
   InterleavedPlane tilt, tilt_rest;
 
   const InterleavedPlane& depth() const { return layers.front().depth; }  ///< of what pixels show

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What lies beyond a raster that is a part of the frame, for a vector of pixels: an overview of the
-// frame (FarScene). Slices read its planes by rows; rays, and surfaces that go on beyond the
+// frame (OverviewScene). Slices read its planes by rows; rays, and surfaces that go on beyond the
 // border, read its own raster.
 #if defined(SSDO_BITMASK_OVERVIEW_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_OVERVIEW_INL_H_
@@ -38,7 +38,7 @@ HWY_INLINE VI index_of(const Interleaving& layout, const OverviewPixels& at) {
              set_int(int(layout.stride())) +
          hn::ShiftRight<Interleaving::kShift>(x) + set_int(Interleaving::kPad);
 }
-HWY_INLINE VI index_of(const FarRaster& far, const OverviewPixels& at) {
+HWY_INLINE VI index_of(const OverviewRaster& far, const OverviewPixels& at) {
   return at.y * set_int(int(far.layout.stride())) + at.x + set_int(Interleaving::kPad);
 }
 
@@ -57,7 +57,7 @@ HWY_INLINE Sampled in_raster(const March& march, const Place& place) {
 
 HWY_INLINE Sampled in_overview(const March& march, const Place& place) {
   const MarchScene& scene = march.scene;
-  const FarRaster& far = march.far->raster;
+  const OverviewRaster& far = march.far->raster;
   const int row = ((place.y + scene.first_y) >> Interleaving::kShift) - far.first_y,
             column = (scene.first_x >> Interleaving::kShift) + place.column - far.first_x;
   return {march.far->planes, row, far.height, column, far.width, far.index(column, row)};
@@ -71,7 +71,7 @@ inline March march_in_overview(const March& march) {
 }
 
 /// A receiver, and a side of a slice, in the pixels of the overview.
-HWY_INLINE MarchReceiver in_far_pixels(const March& march, MarchReceiver p) {
+HWY_INLINE MarchReceiver in_overview_pixels(const March& march, MarchReceiver p) {
   const MarchScene &scene = march.scene, &far = march.far->scene;
   constexpr float kSide = Interleaving::kPeriod;
   const auto place = [&](V x, int first, int far_first) HWY_ATTR {
@@ -82,7 +82,7 @@ HWY_INLINE MarchReceiver in_far_pixels(const March& march, MarchReceiver p) {
   p.reach_px /= kSide;
   return p;
 }
-HWY_INLINE SideFrame in_far_pixels(SideFrame side) {
+HWY_INLINE SideFrame in_overview_pixels(SideFrame side) {
   const V pixels = set(float(Interleaving::kPeriod));
   side.across = {side.across.x * pixels, side.across.y * pixels};
   return side;

@@ -27,12 +27,12 @@ static_assert(kOverviewStride == Interleaving::kPeriod);
 }  // namespace
 
 SlicePattern pattern_of(const Request& request, const Interleaving& layout, const Window& display,
-                        const FarRaster* far) {
+                        const OverviewRaster* far) {
   return {layout, display, request.slices, request.steps, request.seed, 1, far};
 }
 
 SlicePattern bounce_pattern_of(const Request& request, const Interleaving& layout,
-                               const Window& display, const FarRaster* far) {
+                               const Window& display, const OverviewRaster* far) {
   const int slices = request.slices;
   return {layout,
           display,

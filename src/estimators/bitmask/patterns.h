@@ -9,11 +9,11 @@ namespace ssdo {
 
 /// The slices in which a request looks for visibility. `far` may be null.
 SlicePattern pattern_of(const Request& request, const Interleaving& layout, const Window& display,
-                        const FarRaster* far = nullptr);
+                        const OverviewRaster* far = nullptr);
 
 /// The slices in which a request gathers bounce light.
 SlicePattern bounce_pattern_of(const Request& request, const Interleaving& layout,
-                               const Window& display, const FarRaster* far = nullptr);
+                               const Window& display, const OverviewRaster* far = nullptr);
 
 /// As BandSupport has it.
 int reach_rows(const Geometry& some, int stride, const Window& frame, const Window& display,

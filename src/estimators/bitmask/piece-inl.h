@@ -100,7 +100,7 @@ template <bool kOrthographic>
 HWY_INLINE VU sectors_behind_piece(const MarchReceiver& p, const SideFrame& side, Piece piece, V s,
                                    V above, V depth, float radius) {
   M meets = above > set(0);
-  if (radius < kEndless) meets = hn::And(meets, clip(piece, radius));
+  if (radius < kInfiniteLength) meets = hn::And(meets, clip(piece, radius));
   const SlicePoint middle{s, hn::NegMulAdd(s, side.slope, above)};
   const VU inner = sector_of(piece.inner, side.start), outer = sector_of(piece.outer, side.start),
            back = sector_of(back_of<kOrthographic>(p, middle, depth), side.start);

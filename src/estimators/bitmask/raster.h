@@ -87,7 +87,7 @@ class Raster {
   /// The values of an overview in the order of `far`, each mapped by `changed`; not-a-number beside
   /// the overview.
   template <class Change = std::identity>
-  InterleavedPlane in_whole_rows(const InterleavedPlane& values, const FarRaster& far,
+  InterleavedPlane in_whole_rows(const InterleavedPlane& values, const OverviewRaster& far,
                                  const Change& changed = {}) const {
     InterleavedPlane out(far.layout);
     std::fill_n(out.data(), far.layout.size(), std::numeric_limits<float>::quiet_NaN());
@@ -98,19 +98,20 @@ class Raster {
     return out;
   }
   /// The planes of an overview in whole rows.
-  MarchPlanes in_whole_rows(const MarchPlanes& from, const FarRaster& far) const {
+  MarchPlanes in_whole_rows(const MarchPlanes& from, const OverviewRaster& far) const {
     MarchPlanes planes;
     for (const MarchLayer& layer : from.layers)
       planes.layers.push_back(
           {in_whole_rows(layer.depth, far), in_whole_rows(layer.thickness, far)});
     planes.tilt = in_whole_rows(from.tilt, far, [](float both) {
       constexpr float kPixels = 1.0f / kPeriod;  // steps are in pixels of the frame
-      return two_in_one(kPixels * first_of_two(both), kPixels * second_of_two(both));
+      return pack_bf16x2(kPixels * unpack_bf16_first(both), kPixels * unpack_bf16_second(both));
     });
     planes.tilt_rest = in_whole_rows(from.tilt_rest, far);  // a power of two changes no more
     return planes;
   }
-  InterleavedVectors in_whole_rows(const InterleavedVectors& values, const FarRaster& far) const {
+  InterleavedVectors in_whole_rows(const InterleavedVectors& values,
+                                   const OverviewRaster& far) const {
     return {in_whole_rows(values[0], far), in_whole_rows(values[1], far),
             in_whole_rows(values[2], far)};
   }
@@ -121,12 +122,12 @@ class Raster {
   }
 
   /// A picture of `unit` times the shares of a plane.
-  Plane<float> picture(InterleavedShares plane, float unit) const {
+  Plane<float> picture(InterleavedRatios plane, float unit) const {
     return of_receivers(0.0f, [&](std::ptrdiff_t i) { return unit * plane[i]; });
   }
 
   /// A picture of `base` plus the shares of each channel.
-  Plane<glm::vec3> picture(InterleavedColorShares color, const InterleavedPlane& base) const {
+  Plane<glm::vec3> picture(InterleavedColorRatios color, const InterleavedPlane& base) const {
     return of_receivers(glm::vec3(0), [&](std::ptrdiff_t i) {
       return base[i] + glm::vec3(color[0][i], color[1][i], color[2][i]);
     });

@@ -9,8 +9,8 @@
 // The side of a body that the camera does not see (scene/solids/unseen_side.h) is assumed to
 // receive the unoccluded light of its own hemisphere times the ao of the front; but from a lamp,
 // which may be nearer than the solid is thick, the light that rays find there
-// (SourceShares::unseen). In the papers of the method, surfaces that face away from a receiver send
-// nothing: with that, five of seven frames were too dark by 20 % or more.
+// (SourceVisibility::unseen). In the papers of the method, surfaces that face away from a receiver
+// send nothing: with that, five of seven frames were too dark by 20 % or more.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/senders.cpp"
 #include <hwy/foreach_target.h>
@@ -72,7 +72,7 @@ HWY_INLINE V3 shading_normals(const MarchScene& scene, const Place& place) {
 }
 
 /// The share of a source's light that the surfaces in these pixels take.
-HWY_INLINE V taken_at(const MarchScene& scene, const Source& source, const Place& place) {
+HWY_INLINE V link_weight(const MarchScene& scene, const Source& source, const Place& place) {
   if (!source.receivers) return set(1);
   return gather(&(*source.receivers)(0, place.y), columns_of(scene, place));
 }
@@ -87,18 +87,18 @@ HWY_INLINE V3 positions(const MarchScene& scene, const Place& place) {
 /// The direct light of pixels. `share(planes...)`, for the sum of the planes, is the share of the
 /// sky's light that arrives; `of_source(plane)` is that of a source.
 template <class Share, class OfSource>
-HWY_INLINE V3 direct_light(const MarchScene& scene, const FoundShares& found, const Place& place,
-                           const Share& share, const OfSource& of_source) {
+HWY_INLINE V3 direct_light(const MarchScene& scene, const InterleavedVisibility& found,
+                           const Place& place, const Share& share, const OfSource& of_source) {
   const V3 normal = shading_normals(scene, place);
   const V3 sky = unoccluded_sky(found.light, normal);
   if (!found.sky) return sky * share(*found.ao);
   const InterleavedPlane& ao = *found.ao;
-  const InterleavedColorShares& more = *found.sky;
+  const InterleavedColorRatios& more = *found.sky;
   V3 sum = sky * V3{share(ao, more[0]), share(ao, more[1]), share(ao, more[2])};
   const V3 position = positions(scene, place);
   for (std::size_t k = 0; k < found.sources.size(); ++k) {
     const Source& source = *found.light.sources[k];
-    const V3 light = unoccluded(source, position, normal) * taken_at(scene, source, place);
+    const V3 light = unoccluded(source, position, normal) * link_weight(scene, source, place);
     sum = mul_add(light, of_source(found.sources[k]->share), sum);
   }
   return sum;
@@ -108,7 +108,7 @@ HWY_INLINE V3 direct_light(const MarchScene& scene, const FoundShares& found, co
 template <class Share, class OfSource>
 HWY_INLINE V3 light_behind(const SenderJob& job, const Place& place, const Share& share,
                            const OfSource& of_source) {
-  const FoundShares& found = job.found;
+  const InterleavedVisibility& found = job.found;
   const MarchReceiver p = load_receiver(job.scene, place);
   const UnseenSide side = unseen_side(job.scene, p);
   const V3 position = positions(job.scene, place), normal = usable(side.normal, p.valid),
@@ -116,7 +116,7 @@ HWY_INLINE V3 light_behind(const SenderJob& job, const Place& place, const Share
   V3 as_sky = unoccluded_sky(found.light, normal), sum = set(glm::vec3(0));
   for (std::size_t k = 0; k < found.light.sources.size(); ++k) {
     const Source& source = *found.light.sources[k];
-    const V taken = taken_at(job.scene, source, place);
+    const V taken = link_weight(job.scene, source, place);
     if (found.sources.empty() || !found.sources[k]->unseen.data()) {
       as_sky = mul_add(unoccluded(source, position, normal), taken, as_sky);
       continue;
@@ -128,7 +128,7 @@ HWY_INLINE V3 light_behind(const SenderJob& job, const Place& place, const Share
 }
 
 HWY_INLINE V3 both_sides(const V3& front, const V3& back) {
-  return {two_in_one(front.x, back.x), two_in_one(front.y, back.y), two_in_one(front.z, back.z)};
+  return {pack_bf16x2(front.x, back.x), pack_bf16x2(front.y, back.y), pack_bf16x2(front.z, back.z)};
 }
 
 HWY_INLINE V3 albedo_at(const SenderJob& job, const Place& place) {

@@ -136,10 +136,10 @@ HWY_INLINE VU hidden_beyond(const March& march, const MarchReceiver& p, const Si
   on_beyond(false, border, hn::And(open, bits));
   if (none(hn::Not(here))) return bits;
   const March far = march_in_overview(march);
-  const MarchReceiver far_p = in_far_pixels(march, p);
+  const MarchReceiver far_p = in_overview_pixels(march, p);
   const Border far_border = border_along(far.scene, far_p, set(dx), set(dy), false);
-  const VU far_bits =
-      hn::AndNot(here, extend_side<kOrthographic>(far, far_p, in_far_pixels(side), far_border));
+  const VU far_bits = hn::AndNot(
+      here, extend_side<kOrthographic>(far, far_p, in_overview_pixels(side), far_border));
   on_beyond(true, far_border, hn::And(open, far_bits));
   return hn::Or(bits, far_bits);
 }

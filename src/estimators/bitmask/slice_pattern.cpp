@@ -80,8 +80,9 @@ void share_the_way(std::vector<SliceStep>& steps) {
 
 /// The side that starts at column `column_phase` and row `line` of a block. `start` in 0..1 places
 /// each distance in its stratum.
-SliceSide make_side(const Interleaving& layout, const FarRaster* far, int column_phase, int line,
-                    double dx, double dy, int steps, double diagonal, double start, float phase) {
+SliceSide make_side(const Interleaving& layout, const OverviewRaster* far, int column_phase,
+                    int line, double dx, double dy, int steps, double diagonal, double start,
+                    float phase) {
   SliceSide side;
   side.phase = phase;
   double next = march_distance(start / steps, diagonal);
@@ -138,7 +139,7 @@ int SlicePattern::rank(int member) {
 }
 
 SlicePattern::SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
-                           unsigned seed, int spacing, const FarRaster* far)
+                           unsigned seed, int spacing, const OverviewRaster* far)
     : members_(Interleaving::kMembers),
       half_signs_(Interleaving::kMembers, 1.0f),
       spacing_(spacing) {

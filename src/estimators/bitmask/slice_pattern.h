@@ -21,7 +21,7 @@ constexpr int kBlock = 4;
 /// march that it represents: halfway to the samples before and after.
 struct SliceStep {
   float dx, dy;           ///< pixels, y down
-  int row;                ///< dy as a whole number, or rows of FarRaster
+  int row;                ///< dy as a whole number, or rows of OverviewRaster
   int column_shift;       ///< of the entry, within its interleaved row
   std::ptrdiff_t offset;  ///< of the index
   float inner, outer;     ///< ends of the stretch, over the pixel's distance
@@ -31,7 +31,7 @@ struct SliceStep {
 /// One side of a slice.
 struct SliceSide {
   std::vector<SliceStep> steps;  ///< near to far
-  std::size_t near_steps = 0;    ///< those that are in the raster; the others are in FarRaster
+  std::size_t near_steps = 0;    ///< those that are in the raster; the others are in OverviewRaster
   float phase;                   ///< in 0..1: place of the sample point within every sector
 };
 
@@ -46,13 +46,13 @@ struct Slice {
 /// pixel of the display window, and shows what the one in their middle does. Its rows are not
 /// interleaved: pixels of a vector, which are kPeriod apart, see neighbours in it. Each of its rows
 /// takes the place of every eighth pixel of a row of `layout`.
-struct FarRaster {
+struct OverviewRaster {
   Interleaving layout;
   int width, height;
   int first_x, first_y;  ///< its pixel (0, 0) among those that cover the display window
   float from_px;         ///< how far away it begins
 
-  FarRaster(int w, int h, int x, int y, float from)
+  OverviewRaster(int w, int h, int x, int y, float from)
       : layout(w * Interleaving::kPeriod, (h + Interleaving::kPeriod - 1) / Interleaving::kPeriod,
                0),
         width(w),
@@ -74,7 +74,7 @@ class SlicePattern {
   /// pixels, 1 or a power of two, one marches; the others have no slices.
   /// `far` may be null.
   SlicePattern(const Interleaving& layout, const Window& display, int slices, int steps,
-               unsigned seed, int spacing = 1, const FarRaster* far = nullptr);
+               unsigned seed, int spacing = 1, const OverviewRaster* far = nullptr);
 
   int spacing() const { return spacing_; }
 

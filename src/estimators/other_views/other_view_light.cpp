@@ -33,10 +33,10 @@ constexpr std::uint32_t kSurfaceSeed = 0x3c91, kSourceSeed = 0x77e5;
 /// The surfaces of other views as senders: their direct light and bounces, found by rays.
 class OtherViewSenders {
  public:
-  OtherViewSenders(const Scene& scene, const NamedLight& light, float radius)
+  OtherViewSenders(const Scene& scene, const LightGroup& light, float radius)
       : surfaces_(scene.other_surfaces),
         light_(light.light),
-        numbers_(light.numbers),
+        numbers_(light.source_indices),
         to_world_(glm::transpose(scene.geometry.world_to_camera)),
         radius_(radius),
         rays_(surfaces_.vertices, surfaces_.all) {}
@@ -140,7 +140,7 @@ class OtherViewSenders {
   float taken_by(const Source& source, std::uint32_t vertex) const {
     if (!source.receivers) return 1;
     const std::uint32_t pixel = surfaces_.vertices[vertex].frame_pixel;
-    if (pixel != Vertex::kOfOtherView) return source.taken_at(pixel);
+    if (pixel != Vertex::kOfOtherView) return source.link_weight(pixel);
     const auto found = surfaces_.receives.find(source.receive);
     return found == surfaces_.receives.end() ? 0.0f : found->second[vertex];
   }
@@ -183,7 +183,7 @@ class OtherViewSenders {
 
 }  // namespace
 
-std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, const NamedLight& light,
+std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, const LightGroup& light,
                                                  int bounces, float radius) {
   return OtherViewSenders(scene, light, radius).run(bounces);
 }

@@ -4,7 +4,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 #include "scene/scene.h"
 
 namespace ssdo {
@@ -18,7 +18,7 @@ struct OtherViewLight {
 /// The radiance they send of one light, or of all lights as one, after 0, 1, ..., `bounces`
 /// bounces, by rays among all that is known of the scene. `radius` is the farthest at which things
 /// occlude.
-std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, const NamedLight& light,
+std::vector<OtherViewLight> light_other_surfaces(const Scene& scene, const LightGroup& light,
                                                  int bounces, float radius);
 
 }  // namespace ssdo

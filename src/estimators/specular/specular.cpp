@@ -19,7 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
 void specular_of_frame(const Scene& scene, Products& products) {
-  const MirrorModel& model = *products.shares.mirror;
+  const MirrorModel& model = *products.visibility.mirror;
   const Light& light = scene.light;
   const bool orthographic = scene.geometry.camera.orthographic;
   std::vector<FacetPoint> points;
@@ -51,12 +51,12 @@ void specular_of_frame(const Scene& scene, Products& products) {
       const V3 even = reflectance(model.reflectances, frame.cosine, load(roughness), f0);
       const V3 sky = light.sky.is_constant() ? set(light.sky.constant_radiance())
                                              : mirrored_sky(model, points, frame, f0);
-      const V3 share = saturate(load_first(count, &products.shares.mirrored_sky[i])),
+      const V3 share = saturate(load_first(count, &products.visibility.mirrored_sky[i])),
                mirrored = load_first(count, &products.specular[i]);
       V3 sum = even * (sky * share + mirrored);
       for (std::size_t k = 0; k < sources.size(); ++k) {
-        const V arrives = saturate(load_first(count, &products.shares.suns[k][i])) *
-                          taken_at(*light.sources[k], i, count);
+        const V arrives = saturate(load_first(count, &products.visibility.sources[k][i])) *
+                          link_weight(*light.sources[k], i, count);
         sum = mul_add(mirrored_source(sources[k], position, frame, f0), arrives, sum);
       }
       store_first(count, if_then_else_zero(s.surface, within_range(sum)), &products.specular[i]);
@@ -73,7 +73,7 @@ namespace ssdo {
 HWY_EXPORT(specular_of_frame);
 
 void add_specular(Products& products, const Scene& scene) {
-  if (!products.shares.mirror) return;
+  if (!products.visibility.mirror) return;
   HWY_DYNAMIC_DISPATCH(specular_of_frame)(scene, products);
 }
 

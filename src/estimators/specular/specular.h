@@ -11,7 +11,7 @@ namespace ssdo {
 ///   specular = sky S + R H + sum over sources of source_k s_k
 ///
 /// sky, source_k: light that is mirrored without occluders (specular/mirrored_light-inl.h)
-/// S, s_k:        LightShares::mirrored_sky and LightShares::suns
+/// S, s_k:        LightVisibility::mirrored_sky and LightVisibility::sources
 /// R, H:          what is mirrored of even light, and Products::specular as it comes in
 ///
 /// So a filter averages S and H, but not the detail that normal maps give to mirrored lights. Does

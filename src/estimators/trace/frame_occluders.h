@@ -21,11 +21,11 @@ struct TraceRay {
 };
 
 /// The occluders of a ray: the solids of a frame, and surfaces that only other views show.
-struct RayBlockers {
+struct RayOccluders {
   RayScene solids;
   std::unique_ptr<OtherViewRays> other_views;  ///< null: there are none
 
-  explicit RayBlockers(const Scene& scene);
+  explicit RayOccluders(const Scene& scene);
 
   bool is_blocked(const TraceRay& ray, float reach) const;
 };
@@ -41,7 +41,7 @@ class FrameOccluders {
 
   /// The occluders that lamp `source` names for its light; null: everything blocks it. Lamps that
   /// name the same things share them.
-  const RayBlockers* named_by(std::size_t source) const;
+  const RayOccluders* named_by(std::size_t source) const;
 
   bool has_other_views() const { return all_.other_views != nullptr; }
 
@@ -52,13 +52,13 @@ class FrameOccluders {
   bool is_blocked(const TraceRay& ray, float distance, std::size_t source) const;
 
   /// The surface that a ray meets first.
-  std::optional<Met> first_met(const TraceRay& ray) const;
+  std::optional<SurfaceHit> first_hit(const TraceRay& ray) const;
 
  private:
   const Scene& scene_;
   float radius_;
-  RayBlockers all_;
-  std::map<const Scene*, RayBlockers> named_;  ///< those of Scene::blockers
+  RayOccluders all_;
+  std::map<const Scene*, RayOccluders> named_;  ///< those of Scene::linked_occluders
 };
 
 }  // namespace ssdo

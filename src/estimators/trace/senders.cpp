@@ -13,14 +13,14 @@ namespace ssdo {
 namespace {
 
 /// The direct light of `light` that arrives at a pixel.
-glm::vec3 direct_of(const NamedLight& light, const Products& found, const Surfel& s,
+glm::vec3 direct_of(const LightGroup& light, const Products& found, const Surfel& s,
                     std::size_t pixel) {
-  if (found.shares.are_ao || light.name.empty()) return found.direct[pixel];
-  glm::vec3 direct = light.light.unoccluded_sky(s.normal) * found.shares.sky[pixel];
-  for (std::size_t i = 0; i < light.numbers.size(); ++i)
-    direct += light.light.sources[i]->taken_at(pixel) *
+  if (found.visibility.are_ao || light.name.empty()) return found.direct[pixel];
+  glm::vec3 direct = light.light.unoccluded_sky(s.normal) * found.visibility.sky[pixel];
+  for (std::size_t i = 0; i < light.source_indices.size(); ++i)
+    direct += light.light.sources[i]->link_weight(pixel) *
               light.light.sources[i]->unoccluded(s.position, s.normal) *
-              found.shares.suns[light.numbers[i]][pixel];
+              found.visibility.sources[light.source_indices[i]][pixel];
   return direct;
 }
 
@@ -46,10 +46,10 @@ glm::vec3 unoccluded_behind(const Scene& scene, const Light& light, std::size_t 
               through = way_through(thickness, camera.orthographic ? width : width / view.z);
   glm::vec3 sum = light.unoccluded_sky(normal);
   for (const auto& source : light.sources) {
-    if (!source->near_lamp())
-      sum += source->taken_at(pixel) * source->unoccluded(s.position, normal);
+    if (!source->local_lamp())
+      sum += source->link_weight(pixel) * source->unoccluded(s.position, normal);
     else if (!std::isinf(thickness))
-      sum += source->taken_at(pixel) * source->unoccluded(s.position - through * view, normal);
+      sum += source->link_weight(pixel) * source->unoccluded(s.position - through * view, normal);
   }
   return sum;
 }
@@ -79,7 +79,7 @@ void find_senders(const Scene& scene, const Products& found, const Plane<glm::ve
       senders.back[i] = within_range(albedo * (behind + bounce[i]));
     }
   });
-  if (scene.casting) send_from_hole(scene.casting->sender, senders);
+  if (scene.caster_surfaces) send_from_hole(scene.caster_surfaces->sender, senders);
 }
 
 }  // namespace ssdo

@@ -96,11 +96,11 @@ HalfResolution::Taps make_taps(int count, int first) {
     // A value of half resolution lies in the middle of its 2 x 2 pixels, a quarter of its own width
     // from the centre of each.
     const int pixel = std::min(i, count - 1) + first, own = (pixel >> 1) - (first >> 1);
-    const bool first_of_two = (pixel & 1) == 0;
-    const int before = first_of_two ? own - 1 : own;
+    const bool unpack_bf16_first = (pixel & 1) == 0;
+    const int before = unpack_bf16_first ? own - 1 : own;
     taps.before.push_back(std::max(before, 0));
     taps.after.push_back(std::min(before + 1, last));
-    taps.share.push_back(first_of_two ? 0.75f : 0.25f);
+    taps.share.push_back(unpack_bf16_first ? 0.75f : 0.25f);
   }
   return taps;
 }

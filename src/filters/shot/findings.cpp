@@ -45,7 +45,7 @@ HWY_EXPORT(to_half);
 
 namespace {
 
-/// From the deviation of a bent normal from N, as find_shares() leaves it, to world space.
+/// From the deviation of a bent normal from N, as find_visibility() leaves it, to world space.
 glm::vec3 to_world(const glm::vec3& deviation, const glm::vec3& normal,
                    const glm::mat3& to_camera) {
   return glm::transpose(to_camera) * turned(deviation, glm::vec3(0, 0, 1), normal);
@@ -81,14 +81,14 @@ void store_row(Products& products, const Geometry& geometry, int y, Findings& ou
   const glm::mat3 to_camera(geometry.camera.rotation);
   std::size_t channel = 0;
   for_each_found(
-      [&](auto& plane, int, bool bends) {
+      [&](auto& plane, int, bool is_direction) {
         using T = std::decay_t<decltype(plane[0])>;
         if (plane.empty()) return;
         for (int x = 0; x < surfaces.width; ++x) {
           T value = plane(x, y);
           if constexpr (std::is_same_v<T, glm::vec3>) {
             const Surfel& s = surfaces(x, y);
-            if (bends && s.is_surface()) value = to_world(value, s.normal, to_camera);
+            if (is_direction && s.is_surface()) value = to_world(value, s.normal, to_camera);
           }
           store(value / out.unit[channel],
                 &row[std::size_t(x + 1) * std::size_t(out.stride) + channel]);
@@ -102,7 +102,7 @@ void store_row(Products& products, const Geometry& geometry, int y, Findings& ou
 
 Findings take_findings(Products& products, const Geometry& geometry,
                        const Plane<glm::vec3>& radiance) {
-  join_emitted(products.bounce, products.shares.emitted);
+  join_emitted(products.bounce, products.visibility.emitted);
   for (LightProducts& light : products.lights) join_emitted(light.bounce, light.emitted);
   Findings out;
   out.surfaces = keep_surfaces(geometry);
@@ -115,10 +115,10 @@ Findings take_findings(Products& products, const Geometry& geometry,
   }
   int channels = 0;
   for_each_found(
-      [&](auto& plane, int source, bool bends) {
+      [&](auto& plane, int source, bool is_direction) {
         using T = std::decay_t<decltype(plane[0])>;
         const int count = plane.empty() ? 0 : channels_of<T>();
-        out.planes.push_back({count, source, bends});
+        out.planes.push_back({count, source, is_direction});
         out.unit.insert(out.unit.end(), std::size_t(count), unit_of(plane));
         channels += count;
       },

@@ -10,7 +10,7 @@
 
 #include "estimators/products.h"
 #include "filters/shot/kept_surfaces.h"
-#include "filters/shot/own_motion.h"
+#include "filters/shot/object_motion.h"
 #include "math/uninitialized.h"
 #include "scene/geometry.h"
 
@@ -20,9 +20,9 @@ namespace ssdo {
 struct FoundPlane {
   static constexpr int kOfAll = -1, kOfSenders = -2;
 
-  int channels = 0;     ///< 0: it is empty
-  int source = kOfAll;  ///< the source whose shadow it is, or kOfAll or kOfSenders
-  bool bends = false;   ///< directions, which are kept in world space
+  int channels = 0;           ///< 0: it is empty
+  int source = kOfAll;        ///< the source whose shadow it is, or kOfAll or kOfSenders
+  bool is_direction = false;  ///< directions, which are kept in world space
 };
 
 /// What one frame has found of its surfaces, as it and the other frames of its shot look at it: the
@@ -41,7 +41,7 @@ struct Findings {
   std::vector<std::uint16_t, Uninitialized<std::uint16_t>> values;
   /// Luminance of the radiance, in the same order; empty: nothing glows.
   std::vector<float> glow;
-  OwnMotion motion;  ///< since the frame before in time
+  ObjectMotion motion;  ///< since the frame before in time
 };
 
 /// Moves what frames share out of `products`. `radiance` is that of surfaces that glow; it may be
@@ -50,7 +50,7 @@ Findings take_findings(Products& products, const Geometry& geometry,
                        const Plane<glm::vec3>& radiance);
 
 /// `v` turned as the unit vector `a` is turned to the unit vector `b` by the shortest way, as
-/// find_shares() turns bent normals.
+/// find_visibility() turns bent normals.
 inline glm::vec3 turned(const glm::vec3& v, const glm::vec3& a, const glm::vec3& b) {
   const glm::vec3 both = a + b;
   return v - glm::dot(both, v) / std::max(1 + glm::dot(a, b), 1e-6f) * both +
@@ -75,9 +75,9 @@ void for_each_found(const Visit& visit, Products& products) {
               product.kind == ProductKind::direction);
       },
       products);
-  visit(products.shares.sky, FoundPlane::kOfAll, false);
-  for (std::size_t k = 0; k < products.shares.suns.size(); ++k)
-    visit(products.shares.suns[k], int(k), false);
+  visit(products.visibility.sky, FoundPlane::kOfAll, false);
+  for (std::size_t k = 0; k < products.visibility.sources.size(); ++k)
+    visit(products.visibility.sources[k], int(k), false);
 }
 
 }  // namespace ssdo

@@ -40,8 +40,8 @@
 #include <span>
 #include <type_traits>
 
-#include "filters/shot/sights.h"
-#include "filters/shot/speaker.h"
+#include "filters/shot/contributing_frame.h"
+#include "filters/shot/shot_reprojection.h"
 #include "parallel/tiles.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -54,8 +54,8 @@
 namespace ssdo {
 
 /// What another frame says of at most RowOfPoints::kMost points in a row.
-struct Saying {
-  const Sights* sights;
+struct Contribution {
+  const ReprojectedPoints* sights;
   const std::uint16_t* values;  ///< Findings::values
   int row;                      ///< KeptSurfaces::stride()
   const float* units;           ///< by channel, those of the frame over one's own
@@ -86,14 +86,14 @@ HWY_INLINE hn::Vec<Channels> load_half(const std::uint16_t* values) {
 }
 
 /// How much of each channel of a group counts at point `i`.
-HWY_INLINE hn::Vec<Channels> weights_at(const Saying& saying, const std::vector<int>& kinds,
-                                        int stride, int i, int c) {
+HWY_INLINE hn::Vec<Channels> weights_at(const Contribution& contribution,
+                                        const std::vector<int>& kinds, int stride, int i, int c) {
   const Channels d;
-  if (!saying.moved) return hn::LoadU(d, saying.weights + c);
+  if (!contribution.moved) return hn::LoadU(d, contribution.weights + c);
   auto weight = hn::Zero(d);
   for (const int kind : kinds) {
-    const auto of_kind = hn::LoadU(d, saying.weights_of_kinds + kind * stride + c);
-    const auto counts = hn::Set(d, saying.moved[kind * RowOfPoints::kMost + i]);
+    const auto of_kind = hn::LoadU(d, contribution.weights_of_kinds + kind * stride + c);
+    const auto counts = hn::Set(d, contribution.moved[kind * RowOfPoints::kMost + i]);
     weight = hn::MulAdd(of_kind, counts, weight);
   }
   return weight;
@@ -101,29 +101,30 @@ HWY_INLINE hn::Vec<Channels> weights_at(const Saying& saying, const std::vector<
 
 /// Adds the values of other frames to the sums of `count` points, `stride` channels each. `own` are
 /// the frame's own values; the sums have the same units. `all` are the sums of the weights.
-void add_sayings(const std::uint16_t* own, int stride, int count, std::span<const Saying> sayings,
-                 KindsOfGroup kinds, float* sums, float* all) {
+void add_contributions(const std::uint16_t* own, int stride, int count,
+                       std::span<const Contribution> contributions, KindsOfGroup kinds, float* sums,
+                       float* all) {
   const Channels d;
   for (int i = 0; i < count; ++i) {
     for (int c = 0; c < stride; c += int(hn::Lanes(d))) {
       const std::ptrdiff_t at = std::ptrdiff_t(i) * stride + c;
       const auto base = load_half(own + at);
       auto sum = hn::LoadU(d, sums + at), weights = hn::LoadU(d, all + at);
-      for (const Saying& saying : sayings) {
-        const int pixel = saying.sights->pixel[i];
+      for (const Contribution& contribution : contributions) {
+        const int pixel = contribution.sights->pixel[i];
         if (pixel < 0) continue;
-        const auto unit = hn::LoadU(d, saying.units + c);
+        const auto unit = hn::LoadU(d, contribution.units + c);
         // Differences are summed, so that constant values stay exactly as they are.
-        const std::uint16_t* from = saying.values + std::ptrdiff_t(pixel) * stride + c;
+        const std::uint16_t* from = contribution.values + std::ptrdiff_t(pixel) * stride + c;
         const auto tap = [&](int k, const std::uint16_t* value) HWY_ATTR {
-          return hn::Mul(hn::Set(d, saying.sights->weight[k][i]),
+          return hn::Mul(hn::Set(d, contribution.sights->weight[k][i]),
                          hn::MulSub(load_half(value), unit, base));
         };
-        const std::ptrdiff_t below = std::ptrdiff_t(saying.row) * stride;
+        const std::ptrdiff_t below = std::ptrdiff_t(contribution.row) * stride;
         const auto change = hn::Add(hn::Add(tap(0, from), tap(1, from + stride)),
                                     hn::Add(tap(2, from + below), tap(3, from + below + stride)));
         const auto weight =
-            weights_at(saying, kinds[std::size_t(c) / Findings::kGroup], stride, i, c);
+            weights_at(contribution, kinds[std::size_t(c) / Findings::kGroup], stride, i, c);
         sum = hn::MulAdd(weight, change, sum);
         weights = hn::Add(weights, weight);
       }
@@ -147,7 +148,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace ssdo {
 
-HWY_EXPORT(add_sayings);
+HWY_EXPORT(add_contributions);
 HWY_EXPORT(finish_means);
 
 namespace {
@@ -166,52 +167,52 @@ void load(const float* from, glm::vec3& value) { value = {from[0], from[1], from
 
 }  // namespace
 
-/// What a block of points needs for one speaker.
-struct Fusion::Room {
-  explicit Room(std::size_t kind_count) : kinds(kind_count), moved(2 * kinds * kMost) {
-    sayings.reserve(2);
+/// What a block of points needs for one frame.
+struct Fusion::Scratch {
+  explicit Scratch(std::size_t kind_count) : kinds(kind_count), moved(2 * kinds * kMost) {
+    contributions.reserve(2);
   }
-  float* moved_of(std::size_t saying) { return &moved[saying * kinds * kMost]; }
+  float* moved_of(std::size_t contribution) { return &moved[contribution * kinds * kMost]; }
 
   static constexpr std::size_t kMost = RowOfPoints::kMost;
   std::size_t kinds;
   const RowOfPoints* points = nullptr;
-  Sights sights[2] = {};
+  ReprojectedPoints sights[2] = {};
   std::vector<float> moved;
-  std::span<const FollowedPoint> followed;  ///< of the row
-  std::vector<Saying> sayings;
+  std::span<const TrackedPoint> followed;  ///< of the row
+  std::vector<Contribution> contributions;
 };
 
-/// Adds what a speaker says of a block of points, at their places at rest and at those to which
+/// Adds what a frame says of a block of points, at their places at rest and at those to which
 /// points were followed.
-void Fusion::add_speaker(const Speaker& s, const RowOfPixels& row, Room& room) {
+void Fusion::add_frame(const ContributingFrame& s, const RowOfPixels& row, Scratch& scratch) {
   const Findings& there = s.findings;
-  Saying saying{
-      &room.sights[0],          s.arranged.empty() ? there.values.data() : s.arranged.data(),
+  Contribution contribution{
+      &scratch.sights[0],       s.arranged.empty() ? there.values.data() : s.arranged.data(),
       there.surfaces.stride(),  s.units.data(),
       s.weights.data(),         nullptr,
       s.weights_of_kinds.data()};
-  const auto by_x = [](const FollowedPoint& point) { return point.x; };
-  const auto first = std::ranges::lower_bound(room.followed, row.x, {}, by_x),
-             last = std::ranges::lower_bound(room.followed, row.x + row.count, {}, by_x);
-  if (s.reprojection.find(*room.points, room.sights[0])) {
-    float* counts = room.moved_of(0);
+  const auto by_x = [](const TrackedPoint& point) { return point.x; };
+  const auto first = std::ranges::lower_bound(scratch.followed, row.x, {}, by_x),
+             last = std::ranges::lower_bound(scratch.followed, row.x + row.count, {}, by_x);
+  if (s.reprojection.find(*scratch.points, scratch.sights[0])) {
+    float* counts = scratch.moved_of(0);
     if (s.moved) {
-      for (std::size_t kind = 0; kind < room.kinds; ++kind)
-        s.moved->row(int(kind) - 1, row, counts + kind * Room::kMost);
+      for (std::size_t kind = 0; kind < scratch.kinds; ++kind)
+        s.moved->row(int(kind) - 1, row, counts + kind * Scratch::kMost);
     } else if (first != last) {
-      std::fill_n(counts, room.kinds * Room::kMost, 1.0f);
+      std::fill_n(counts, scratch.kinds * Scratch::kMost, 1.0f);
     }
     for (auto point = first; point != last; ++point)
-      for (std::size_t kind = 0; kind < room.kinds; ++kind)
-        counts[kind * Room::kMost + std::size_t(point->x - row.x)] *= 1 - point->follows;
-    if (s.moved || first != last) saying.moved = counts;
-    room.sayings.push_back(saying);
+      for (std::size_t kind = 0; kind < scratch.kinds; ++kind)
+        counts[kind * Scratch::kMost + std::size_t(point->x - row.x)] *= 1 - point->track_weight;
+    if (s.moved || first != last) contribution.moved = counts;
+    scratch.contributions.push_back(contribution);
   }
   if (first == last) return;
-  Sights& sights = room.sights[1];
+  ReprojectedPoints& sights = scratch.sights[1];
   std::fill_n(sights.pixel, row.count, -1);
-  float* counts = room.moved_of(1);  // 0 for sources
+  float* counts = scratch.moved_of(1);  // 0 for sources
   float beside[RowOfPoints::kMost];
   std::fill_n(beside, row.count, 1.0f);
   if (s.moved) s.moved->row_of_moving(row, beside);
@@ -219,10 +220,10 @@ void Fusion::add_speaker(const Speaker& s, const RowOfPixels& row, Room& room) {
     const auto i = std::size_t(point->x - row.x);
     sights.pixel[i] = point->pixel;
     for (int corner = 0; corner < 4; ++corner) sights.weight[corner][i] = point->weight[corner];
-    counts[i] = point->follows * point->counts * beside[i];
+    counts[i] = point->track_weight * point->confidence * beside[i];
   }
-  saying.sights = &sights, saying.moved = counts;
-  room.sayings.push_back(saying);
+  contribution.sights = &sights, contribution.moved = counts;
+  scratch.contributions.push_back(contribution);
 }
 
 Fusion::Fusion(const Findings& own, const Light& light)
@@ -243,34 +244,35 @@ Fusion::Fusion(const Findings& own, const Light& light)
   });
 }
 
-// A whole row is done for one speaker before the next, so that memory is read in order.
+// A whole row is done for one frame before the next, so that memory is read in order.
 void Fusion::add(const std::vector<OtherFindings>& others, bool are_last) {
   if (!own_.surfaces.world_known || own_.stride == 0) return;
-  const std::vector<Speaker> speakers = speakers_of(own_, others, light_, kinds_);
+  const std::vector<ContributingFrame> frames =
+      contributing_frames_of(own_, others, light_, kinds_);
   followed_.reach(others);
   const Window& window = own_.surfaces.window;
   for_each_row(window.height(), [&](int y) {
-    std::vector<std::vector<FollowedPoint>> followed(others.size());
+    std::vector<std::vector<TrackedPoint>> followed(others.size());
     followed_.row(y, are_last, followed);
-    if (speakers.empty()) return;
+    if (frames.empty()) return;
     std::vector<RowOfPixels> blocks;
     for (int x = 0; x < window.width(); x += RowOfPoints::kMost)
       blocks.push_back({x, y, 1, std::min(RowOfPoints::kMost, window.width() - x)});
     std::vector<RowOfPoints> points(blocks.size());
     for (std::size_t b = 0; b < blocks.size(); ++b)
       load_points(own_.surfaces, blocks[b], points[b]);
-    Room room(light_.sources.size() + 1);
-    for (const Speaker& s : speakers) {
-      room.followed = followed[s.other];
+    Scratch scratch(light_.sources.size() + 1);
+    for (const ContributingFrame& s : frames) {
+      scratch.followed = followed[s.other];
       for (std::size_t b = 0; b < blocks.size(); ++b) {
-        room.points = &points[b];
-        room.sayings.clear();
-        add_speaker(s, blocks[b], room);
-        if (room.sayings.empty()) continue;
+        scratch.points = &points[b];
+        scratch.contributions.clear();
+        add_frame(s, blocks[b], scratch);
+        if (scratch.contributions.empty()) continue;
         const std::size_t first = own_.surfaces.index(blocks[b].x, y) * std::size_t(own_.stride);
-        HWY_DYNAMIC_DISPATCH(add_sayings)
-        (&own_.values[first], own_.stride, blocks[b].count, room.sayings, groups_, &sums_[first],
-         &all_[first]);
+        HWY_DYNAMIC_DISPATCH(add_contributions)
+        (&own_.values[first], own_.stride, blocks[b].count, scratch.contributions, groups_,
+         &sums_[first], &all_[first]);
       }
     }
   });
@@ -302,7 +304,7 @@ void Fusion::finish(const Geometry& geometry, Products& products) {
             value *= own_.unit[channel];
             if constexpr (std::is_same_v<std::decay_t<decltype(value)>, glm::vec3>) {
               const Surfel& s = surfaces(x, y);
-              if (found.bends && s.is_surface())
+              if (found.is_direction && s.is_surface())
                 value = turned(to_camera * value, s.normal, glm::vec3(0, 0, 1));
             }
           }

@@ -40,11 +40,6 @@ std::uint32_t steps_of(float rounding) {
 
 }  // namespace
 
-CameraChange::CameraChange(const KeptSurfaces& from, const KeptSurfaces& to)
-    : to_(&to.camera),
-      turn_(to.camera.rotation * glm::transpose(from.camera.rotation)),
-      step_(to.camera.rotation * (from.camera.origin - to.camera.origin)) {}
-
 KeptSurfaces keep_surfaces(const Geometry& geometry) {
   const Surfaces& surfaces = geometry.surfaces;
   KeptSurfaces kept{geometry.camera, geometry.window, geometry.world_known, 0, {}};

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "math/uninitialized.h"
+#include "scene/camera/camera_change.h"
 #include "scene/geometry.h"
 
 namespace ssdo {
@@ -79,27 +80,6 @@ inline float rounding_of(const KeptSurface& surface, const KeptSurfaces& surface
       (surface.packed >> KeptSurface::kRoundingShift << KeptSurface::kFloatShift) +
       surfaces.least_rounding);
 }
-
-/// From the camera space of one frame to that of another and into its picture. A rotation and the
-/// camera's own step stay exact however far away the world's origin is.
-class CameraChange {
- public:
-  CameraChange(const KeptSurfaces& from, const KeptSurfaces& to);
-
-  glm::dvec3 position(const glm::vec3& p) const { return turn_ * glm::dvec3(p) + step_; }
-  glm::vec3 direction(const glm::vec3& v) const { return glm::vec3(turn_ * glm::dvec3(v)); }
-
-  /// Projects a position in the space of the other camera to pixels of the display window; not
-  /// finite behind that camera.
-  glm::dvec2 place(const glm::dvec3& there) const {
-    return to_->orthographic || there.z < 0 ? to_->project(there) : glm::dvec2(NAN);
-  }
-
- private:
-  const Camera* to_;
-  glm::dmat3 turn_;
-  glm::dvec3 step_;
-};
 
 /// Normals are kept to 0.001 radians, and roundings to an eighth, upward.
 KeptSurfaces keep_surfaces(const Geometry& geometry);

@@ -12,9 +12,10 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
-#include "filters/shot/sights.h"
+#include "filters/shot/shot_reprojection.h"
 #include "math/plane.h"
 #include "parallel/tiles.h"
+#include "scene/camera/camera_change.h"
 
 namespace ssdo {
 namespace {
@@ -31,19 +32,20 @@ constexpr float kBallReach = 1.5f;
 /// Points of a frame on a grid, and which of them have moved.
 class MovedPoints {
  public:
-  MovedPoints(const KeptSurfaces& stands, const KeptSurfaces& looks, const OwnMotion& motion)
-      : stands_(stands),
+  MovedPoints(const KeptSurfaces& shown_in, const KeptSurfaces& seen_through_by,
+              const ObjectMotion& motion)
+      : shown_in_(shown_in),
         motion_(motion),
-        stride_(grid_step(stands)),
-        columns_((stands.window.width() + stride_ - 1) / stride_),
-        rows_((stands.window.height() + stride_ - 1) / stride_),
+        stride_(grid_step(shown_in)),
+        columns_((shown_in.window.width() + stride_ - 1) / stride_),
+        rows_((shown_in.window.height() + stride_ - 1) / stride_),
         moved_(Plane<unsigned char>::like(Plane<unsigned char>(columns_, rows_))) {
-    const ShotReprojection reprojection(looks, stands);
+    const ShotReprojection reprojection(seen_through_by, shown_in);
     for_each_row(rows_, [&](int row) {
       RowOfPoints points;
       for (int column = 0; column < columns_; column += RowOfPoints::kMost) {
         const int count = std::min(RowOfPoints::kMost, columns_ - column);
-        load_points(stands, {column * stride_, row * stride_, stride_, count}, points);
+        load_points(shown_in, {column * stride_, row * stride_, stride_, count}, points);
         reprojection.find_through(points, &moved_(column, row));
       }
     });
@@ -58,12 +60,13 @@ class MovedPoints {
 
  private:
   const glm::vec3& position(int column, int row) const {
-    return stands_.pixels[stands_.index(column * stride_, row * stride_)].position;
+    return shown_in_.pixels[shown_in_.index(column * stride_, row * stride_)].position;
   }
 
   /// Distance from one grid point to the next, at the depth of `p`.
   float spacing_at(const glm::vec3& p) const {
-    return float(stride_) * (stands_.camera.orthographic ? 1.0f : -p.z) / float(stands_.camera.fx);
+    return float(stride_) * (shown_in_.camera.orthographic ? 1.0f : -p.z) /
+           float(shown_in_.camera.fx);
   }
 
   /// Number of moved points in an unbroken line through the moved point `from`.
@@ -87,7 +90,8 @@ class MovedPoints {
         if (!moved_(column, row)) continue;
         const glm::vec3& p = position(column, row);
         const float spacing = spacing_at(p);
-        velocity += velocity_of(motion_, stands_, stands_.index(column * stride_, row * stride_));
+        velocity +=
+            velocity_of(motion_, shown_in_, shown_in_.index(column * stride_, row * stride_));
         sum += p, squares += glm::dot(p, p);
         area += spacing * spacing;
         deep += spacing * float(std::min(run({column, row}, {1, 0}), run({column, row}, {0, 1})));
@@ -95,7 +99,7 @@ class MovedPoints {
       }
     }
     if (count < kFewestPoints) return;
-    const glm::vec3 middle = sum / float(count), away = stands_.camera.orthographic
+    const glm::vec3 middle = sum / float(count), away = shown_in_.camera.orthographic
                                                             ? glm::vec3(0, 0, -1)
                                                             : glm::normalize(middle);
     const float half = deep / float(2 * count),
@@ -104,30 +108,30 @@ class MovedPoints {
                       velocity / float(count)});
   }
 
-  const KeptSurfaces& stands_;
-  const OwnMotion& motion_;
+  const KeptSurfaces& shown_in_;
+  const ObjectMotion& motion_;
   const int stride_, columns_, rows_;
   Plane<unsigned char> moved_;
 };
 
 }  // namespace
 
-std::vector<MovedPiece> find_pieces(const KeptSurfaces& stands, const KeptSurfaces& looks,
-                                    const OwnMotion& motion) {
-  if (!stands.world_known || !looks.world_known) return {};
-  return MovedPoints(stands, looks, motion).pieces();
+std::vector<MovedPiece> find_pieces(const KeptSurfaces& shown_in,
+                                    const KeptSurfaces& seen_through_by,
+                                    const ObjectMotion& motion) {
+  if (!shown_in.world_known || !seen_through_by.world_known) return {};
+  return MovedPoints(shown_in, seen_through_by, motion).pieces();
 }
 
 std::vector<MovedPiece> moved_pieces(const Camera& now, const Camera& other,
-                                     std::vector<MovedPiece> gone,
-                                     const std::vector<MovedPiece>& come) {
-  const glm::dmat3 turn = now.rotation * glm::transpose(other.rotation);
-  const glm::dvec3 step = now.rotation * (other.origin - now.origin);
-  for (MovedPiece piece : come) {
-    piece.centre = glm::vec3(turn * glm::dvec3(piece.centre) + step);
-    gone.push_back(piece);
+                                     std::vector<MovedPiece> disappeared,
+                                     const std::vector<MovedPiece>& appeared) {
+  const CameraChange change(other, now);
+  for (MovedPiece piece : appeared) {
+    piece.centre = glm::vec3(change.position(piece.centre));
+    disappeared.push_back(piece);
   }
-  return gone;
+  return disappeared;
 }
 
 }  // namespace ssdo

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "filters/shot/kept_surfaces.h"
-#include "filters/shot/own_motion.h"
+#include "filters/shot/object_motion.h"
 
 namespace ssdo {
 
@@ -20,15 +20,17 @@ struct MovedPiece {
   glm::vec3 velocity{0};
 };
 
-/// The pieces that stand in the frame `stands` and that `looks` looks through, in the camera space
-/// of `stands`, to which `motion` belongs. None where one of the frames does not know the world.
-std::vector<MovedPiece> find_pieces(const KeptSurfaces& stands, const KeptSurfaces& looks,
-                                    const OwnMotion& motion = {});
+/// The pieces that stand in the frame `shown_in` and that `seen_through_by` looks through, in the
+/// camera space of `shown_in`, to which `motion` belongs. None where one of the frames does not
+/// know the world.
+std::vector<MovedPiece> find_pieces(const KeptSurfaces& shown_in,
+                                    const KeptSurfaces& seen_through_by,
+                                    const ObjectMotion& motion = {});
 
-/// All that moved between two frames, in the camera space of `now`: `gone` are
-/// find_pieces(now, other), `come` are find_pieces(other, now).
+/// All that moved between two frames, in the camera space of `now`: `disappeared` are
+/// find_pieces(now, other), `appeared` are find_pieces(other, now).
 std::vector<MovedPiece> moved_pieces(const Camera& now, const Camera& other,
-                                     std::vector<MovedPiece> gone,
-                                     const std::vector<MovedPiece>& come);
+                                     std::vector<MovedPiece> disappeared,
+                                     const std::vector<MovedPiece>& appeared);
 
 }  // namespace ssdo

@@ -194,12 +194,12 @@ void for_each_middles(const KeptSurfaces& now, const Plane<float>& squares, cons
 }
 
 /// Velocities of what moves by more than may be noise.
-void find_velocities(const KeptSurfaces& now, const OwnMotion& motion, const RowOfPixels& row,
+void find_velocities(const KeptSurfaces& now, const ObjectMotion& motion, const RowOfPixels& row,
                      VelocitiesOfPoints& velocities) {
   for (int i = 0; i < RowOfPoints::kMost; ++i) {
     glm::vec3 velocity(0);
     const std::size_t pixel = now.index(row.x + i * row.step, row.y);
-    if (i < row.count && glm::length(motion.at(pixel)) > double(OwnMotion::kLeast))
+    if (i < row.count && glm::length(motion.at(pixel)) > double(ObjectMotion::kLeast))
       velocity = velocity_of(motion, now, pixel);
     for (int c = 0; c < 3; ++c) velocities.of[c][i] = velocity[c];
   }
@@ -228,7 +228,7 @@ MovedWeights::MovedWeights(const KeptSurfaces& now, const std::vector<MovedPiece
 }
 
 void MovedWeights::weigh_moving(const KeptSurfaces& now, const std::vector<MovedPiece>& pieces,
-                                const OwnMotion& motion, int frames) {
+                                const ObjectMotion& motion, int frames) {
   of_moving_ = Plane<float>(of_all_.width, of_all_.height, 1.0f);
   if (motion.pixels.empty()) return;
   for_each_middles(now, of_moving_,

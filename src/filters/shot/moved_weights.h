@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "filters/shot/moved.h"
-#include "filters/shot/sights.h"
+#include "filters/shot/shot_reprojection.h"
 #include "math/plane.h"
 #include "scene/light/light.h"
 
@@ -25,7 +25,7 @@ class MovedWeights {
   /// Finds the weights of points of `now` that move. `pieces` are those that stand in it, and the
   /// other frame is `frames` later, or before.
   void weigh_moving(const KeptSurfaces& now, const std::vector<MovedPiece>& pieces,
-                    const OwnMotion& motion, int frames);
+                    const ObjectMotion& motion, int frames);
 
   /// After weigh_moving(): 0..1 for all light that is not of a source, where points are followed.
   void row_of_moving(const RowOfPixels& row, float* weights) const;

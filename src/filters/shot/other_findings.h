@@ -11,9 +11,9 @@ namespace ssdo {
 /// Another frame of the shot, and what moved between it and the frame that takes the mean.
 struct OtherFindings {
   const Findings* findings;
-  int away;                             ///< its number less that of the frame
-  const std::vector<MovedPiece>* gone;  ///< find_pieces(frame, other)
-  const std::vector<MovedPiece>* come;  ///< find_pieces(other, frame)
+  int away;                                    ///< its number less that of the frame
+  const std::vector<MovedPiece>* disappeared;  ///< find_pieces(frame, other)
+  const std::vector<MovedPiece>* appeared;     ///< find_pieces(other, frame)
 };
 
 }  // namespace ssdo

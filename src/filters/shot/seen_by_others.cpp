@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "filters/shot/sights.h"
+#include "filters/shot/shot_reprojection.h"
 
 namespace ssdo {
 
@@ -13,7 +13,7 @@ void ShownPoints::add(const KeptSurfaces& other) {
   ++frames_;
   const ShotReprojection reprojection(other, own_);
   RowOfPoints at;
-  Sights sights;
+  ReprojectedPoints sights;
   unsigned char through[RowOfPoints::kMost];
   std::size_t number = 0;
   for_each_points_of_grid(own_, grid_step(own_), [&](const RowOfPixels& row) {

@@ -28,40 +28,40 @@ std::string_view type_of(bool half) { return half ? "half" : "float"; }
 
 }  // namespace
 
-FrameLooks looks_of(const Frame& frame, const FrameFiles& files, int number) {
+FrameTraits traits_of(const Frame& frame, const FrameFiles& files, int number) {
   const Window& display = frame.part().display_window;
   const Geometry& geometry = frame.scene.geometry;
-  FrameLooks looks;
-  looks.number = number;
-  looks.view = frame.view;
-  looks.width = display.width(), looks.height = display.height();
-  looks.normal_space = normal_space_of(frame);
+  FrameTraits traits;
+  traits.number = number;
+  traits.view = frame.view;
+  traits.width = display.width(), traits.height = display.height();
+  traits.normal_space = normal_space_of(frame);
   if (frame.layers[Role::depth]) {
-    looks.depth_kind = frame.gbuffer.encodings.depth_is_wrong       ? "left out"
-                       : frame.gbuffer.depth_kind == DepthKind::ray ? "ray"
-                                                                    : "planar";
+    traits.depth_kind = frame.gbuffer.encodings.depth_is_wrong       ? "left out"
+                        : frame.gbuffer.depth_kind == DepthKind::ray ? "ray"
+                                                                     : "planar";
   }
   // A frame without surfaces has no use for views, whether they fit or not.
-  if (frame.report.placement.median_depth > 0) looks.also = files.also;
-  for (const std::string& file : looks.also)
-    looks.fits.push_back(std::ranges::find(frame.views, file, &MergeCounts::file) !=
-                         frame.views.end());
+  if (frame.report.placement.median_depth > 0) traits.also = files.also;
+  for (const std::string& file : traits.also)
+    traits.fits.push_back(std::ranges::find(frame.views, file, &MergeCounts::file) !=
+                          frame.views.end());
   for (std::size_t i = 0; i < kRoleCount; ++i)
     if (const auto& layer = frame.layers.layers[i])
-      looks.layers[i] = layer->name, looks.half[i] = layer->half;
-  looks.camera = geometry.camera;
-  looks.display = geometry.display;
-  looks.median_depth = geometry.median_depth;
-  looks.world_known = geometry.world_known;
-  looks.radius = frame.plan.request.radius;
-  looks.radius_alone = frame.plan.radius_alone;
-  looks.guessed = frame.guessed.share;
-  looks.in_shot = frame.plan.shot;
-  looks.remedy = frame.guessed.remedy;
-  return looks;
+      traits.layers[i] = layer->name, traits.half[i] = layer->half;
+  traits.camera = geometry.camera;
+  traits.display = geometry.display;
+  traits.median_depth = geometry.median_depth;
+  traits.world_known = geometry.world_known;
+  traits.radius = frame.plan.request.radius;
+  traits.radius_alone = frame.plan.radius_alone;
+  traits.guessed = frame.guessed.share;
+  traits.in_shot = frame.plan.shot;
+  traits.remedy = frame.guessed.remedy;
+  return traits;
 }
 
-std::vector<std::pair<std::string, std::string>> FrameLooks::properties() const {
+std::vector<std::pair<std::string, std::string>> FrameTraits::properties() const {
   std::vector<std::pair<std::string, std::string>> found;
   for (std::size_t i = 0; i < kRoleCount; ++i)
     found.emplace_back(
@@ -75,7 +75,7 @@ std::vector<std::pair<std::string, std::string>> FrameLooks::properties() const 
   return found;
 }
 
-std::vector<std::string> changes(const FrameLooks& before, const FrameLooks& now) {
+std::vector<std::string> changes(const FrameTraits& before, const FrameTraits& now) {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < kRoleCount; ++i) {
     const std::string &old = before.layers[i], &own = now.layers[i];

@@ -12,7 +12,7 @@
 namespace ssdo {
 
 /// What is expected to stay the same from one frame of a sequence to the next, or to change little.
-struct FrameLooks {
+struct FrameTraits {
   int number = 0;
   std::string view;                            ///< of a stereo file; empty: there is one only
   std::array<std::string, kRoleCount> layers;  ///< by role, without their view; empty: none
@@ -35,12 +35,12 @@ struct FrameLooks {
   std::vector<std::pair<std::string, std::string>> properties() const;
 };
 
-FrameLooks looks_of(const Frame& frame, const FrameFiles& files, int number);
+FrameTraits traits_of(const Frame& frame, const FrameFiles& files, int number);
 
 /// A line for each layer that comes, goes, has another name or is stored in another type, for
 /// another size, for normals of another space, and for a view of --also that is used in one of them
 /// only.
-std::vector<std::string> changes(const FrameLooks& before, const FrameLooks& now);
+std::vector<std::string> changes(const FrameTraits& before, const FrameTraits& now);
 
 /// What differs between the views of a stereo frame, as warnings. Errors: ExitCode::layer where
 /// both are made from the same channels.

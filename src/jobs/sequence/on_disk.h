@@ -32,9 +32,10 @@ void for_each_array(WorkOnView& work, const Visit& visit) {
   const auto visit_plane = [&](auto& plane) { visit(plane.pixels); };
   Products& products = work.relit.found.products;
   for_each_plane([&](const Product&, auto& plane) { visit_plane(plane); }, products);
-  for_each_share(visit_plane, products);
-  for (std::vector<ShadowDraw>* draws : {&products.shares.draws, &products.shares.draws_again})
-    for (ShadowDraw& draw : *draws) visit_plane(draw.weight), visit_plane(draw.width_px);
+  for_each_visibility(visit_plane, products);
+  for (std::vector<ShadowSample>* samples :
+       {&products.visibility.samples, &products.visibility.samples_again})
+    for (ShadowSample& sample : *samples) visit_plane(sample.weight), visit_plane(sample.width_px);
   visit_plane(work.relit.products.lit), visit_plane(work.relit.products.lit_without);
   Scene& scene = work.relit.found.scene;
   scene.geometry.surfaces.for_each_plane(visit_plane);

@@ -61,12 +61,12 @@ std::optional<View> SequenceFrames::read(const FrameFiles& files, std::size_t mo
   return std::nullopt;
 }
 
-std::optional<CameraBeside> SequenceFrames::camera_of(const FrameFiles& files) const {
+std::optional<NeighbourCamera> SequenceFrames::camera_of(const FrameFiles& files) const {
   const std::optional<View> view = read(files, kAllPixels);
   if (!view) return std::nullopt;
   const Placement& placement = view->report.placement;
-  if (placement.of_positions.panorama || placement.median_depth <= 0) return std::nullopt;
-  return CameraBeside{placement.of_positions, view->gbuffer.display_of_file(), files.input};
+  if (placement.position_camera.panorama || placement.median_depth <= 0) return std::nullopt;
+  return NeighbourCamera{placement.position_camera, view->gbuffer.display_of_file(), files.input};
 }
 
 /// Calls `at` for those of `count` frames on disk, spread evenly over the shot from its first to
@@ -90,16 +90,16 @@ void SequenceFrames::look(const std::string& name, std::size_t most_pixels,
 }
 
 /// What frames on disk tell; each is read once for all that is asked.
-const std::vector<SequenceFrames::Told>& SequenceFrames::told(const std::string& name) {
-  const auto [at, is_new] = told_.try_emplace(name);
-  std::vector<Told>& all = at->second;
+const std::vector<SequenceFrames::ShotClues>& SequenceFrames::clues(const std::string& name) {
+  const auto [at, is_new] = clues_.try_emplace(name);
+  std::vector<ShotClues>& all = at->second;
   if (!is_new) return all;
   const auto note = [&](const View& view, bool of_three) {
     const Geometry& geometry = view.geometry;
-    Told& told = all.emplace_back(Told{of_three, {}, {}, radius_by_frame(geometry)});
+    ShotClues& clue = all.emplace_back(ShotClues{of_three, {}, {}, radius_by_frame(geometry)});
     if (!of_three) return;
-    if (geometry.world_known) told.up = up_evidence(geometry);
-    if (const auto found = find_backdrop(geometry)) told.clearance = found->clearance;
+    if (geometry.world_known) clue.up = up_evidence(geometry);
+    if (const auto found = find_backdrop(geometry)) clue.clearance = found->clearance;
   };
   look(name, kEnoughForUp, note, finds_radius(options_.model) ? kFramesForRadius : kThree);
   return all;
@@ -110,7 +110,7 @@ std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
   if (up_) return *up_;
   UpEvidence mean{};
   double count = 0;
-  for (const Told& frame : told(name)) {
+  for (const ShotClues& frame : clues(name)) {
     if (!frame.up) continue;
     count += 1;
     for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += ((*frame.up)[i] - mean[i]) / count;
@@ -122,7 +122,7 @@ std::optional<UpEvidence> SequenceFrames::up(const std::string& name) {
 std::optional<double> SequenceFrames::backdrop(const std::string& name) {
   if (backdrop_) return *backdrop_;
   double sum = 0, count = 0;
-  for (const Told& frame : told(name))
+  for (const ShotClues& frame : clues(name))
     if (frame.clearance) sum += std::log(*frame.clearance), count += 1;
   return backdrop_.emplace(count > 0 ? std::optional(std::exp(sum / count)) : std::nullopt);
 }
@@ -146,7 +146,7 @@ std::optional<float> SequenceFrames::radius(const std::string& name) {
   const auto [at, is_new] = radius_.try_emplace(name);
   if (!is_new) return at->second;
   std::vector<float> found;
-  for (const Told& frame : told(name)) found.push_back(frame.radius);
+  for (const ShotClues& frame : clues(name)) found.push_back(frame.radius);
   std::ranges::sort(found);
   const std::size_t half = found.size() / 2;
   if (!found.empty())

@@ -32,7 +32,7 @@ class SequenceFrames {
 
  private:
   /// What a frame on disk tells of its shot.
-  struct Told {
+  struct ShotClues {
     bool of_three;  ///< it is the first, the middle or the last of the shot
     std::optional<UpEvidence> up;
     std::optional<double> clearance;  ///< Backdrop::clearance
@@ -42,11 +42,11 @@ class SequenceFrames {
   Frame prepare(const FrameOptions& options, const Lighting& light, const FrameFiles& files,
                 int number);
   std::optional<View> read(const FrameFiles& files, std::size_t most_pixels) const;
-  std::optional<CameraBeside> camera_of(const FrameFiles& files) const;
+  std::optional<NeighbourCamera> camera_of(const FrameFiles& files) const;
   void look(const std::string& view, std::size_t most_pixels,
             const std::function<void(const View&, bool of_three)>& at,
             std::size_t count = kThree) const;
-  const std::vector<Told>& told(const std::string& view);
+  const std::vector<ShotClues>& clues(const std::string& view);
   std::optional<UpEvidence> up(const std::string& view);
   std::string normal_space(const std::string& view);
   std::optional<float> radius(const std::string& view);
@@ -56,11 +56,11 @@ class SequenceFrames {
 
   const RunOptions& options_;
   OtherPictures& pictures_;
-  std::map<std::string, std::vector<Told>> told_;       ///< by view, once something was asked for
-  std::optional<std::optional<UpEvidence>> up_;         ///< of the shot, once it was asked for
-  std::optional<std::string> normal_space_;             ///< the same; empty: no frame is sure
-  std::map<std::string, std::optional<float>> radius_;  ///< the same, by view
-  std::optional<std::optional<double>> backdrop_;       ///< the same: Backdrop::clearance
+  std::map<std::string, std::vector<ShotClues>> clues_;  ///< by view, once something was asked for
+  std::optional<std::optional<UpEvidence>> up_;          ///< of the shot, once it was asked for
+  std::optional<std::string> normal_space_;              ///< the same; empty: no frame is sure
+  std::map<std::string, std::optional<float>> radius_;   ///< the same, by view
+  std::optional<std::optional<double>> backdrop_;        ///< the same: Backdrop::clearance
 };
 
 }  // namespace ssdo

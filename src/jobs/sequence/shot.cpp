@@ -41,7 +41,7 @@ Shot::Shot(const std::vector<Job>& jobs, const ShotWindow& window, bool only_loo
   for (std::size_t i = 0; i < jobs.size(); ++i)
     if (jobs[i].frame) at_frame.emplace(*jobs[i].frame, i);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (jobs[i].is_lent || !jobs[i].frame) continue;
+    if (jobs[i].has_no_outputs || !jobs[i].frame) continue;
     for (const int frame : frames_around(window, *jobs[i].frame))
       if (const auto found = at_frame.find(frame); found != at_frame.end())
         around_[i].push_back(found->second);
@@ -90,7 +90,7 @@ void Shot::find_motion(std::size_t job, std::size_t view, Work& work, Findings& 
   if (before == findings_.end()) return;
   Findings copy;
   const Findings& then = in_memory(before->second, copy, kArraysOfGeometry);
-  own.motion = find_own_motion(layer, own.surfaces, then.surfaces);
+  own.motion = find_object_motion(layer, own.surfaces, then.surfaces);
   if (!own.motion.contradicts) return;
   work.messages.warn(
       {fmt::format("{} moves other ways than the cameras say, and is not used; are its units "
@@ -113,7 +113,7 @@ void Shot::keep(Waiting& waiting) {
     kept_bytes_ += kept.bytes, found += bytes;
     findings_.emplace(std::pair(job, v), std::move(kept));
   }
-  if (jobs_[job].is_lent) return;
+  if (jobs_[job].has_no_outputs) return;
   for (WorkOnView& view : waiting.work.views) waits += bytes_of(view);
   if (waiting_bytes_ + waits + most_kept_ * found <= room)
     waiting_bytes_ += waiting.bytes = waits;
@@ -126,7 +126,7 @@ void Shot::add(Work work) {
   Waiting waiting{std::move(work), {}, 0};
   if (is_shot_ && is_wanted(latest_))
     attempt(waiting.work, jobs_[latest_].input(), [&] { keep(waiting); });
-  if (jobs_[latest_].is_lent) waiting.work.views.clear();
+  if (jobs_[latest_].has_no_outputs) waiting.work.views.clear();
   waiting_.push_back(std::move(waiting));
 }
 
@@ -206,9 +206,11 @@ void Shot::look(std::size_t job, std::size_t view, WorkOnView& work) {
 /// The pieces that stand in the first job and that the second looks through, in a view. They are
 /// found once for both jobs.
 const std::vector<MovedPiece>& Shot::pieces(const std::array<std::size_t, 3>& of,
-                                            const Findings& stands, const Findings& looks) {
+                                            const Findings& shown_in,
+                                            const Findings& seen_through_by) {
   const auto [place, is_new] = pieces_.try_emplace(of);
-  if (is_new) place->second = find_pieces(stands.surfaces, looks.surfaces, stands.motion);
+  if (is_new)
+    place->second = find_pieces(shown_in.surfaces, seen_through_by.surfaces, shown_in.motion);
   return place->second;
 }
 

@@ -75,7 +75,7 @@ class Shot {
   template <class Visit>
   void for_each_other(std::size_t job, std::size_t view, const Visit& visit) const;
   const std::vector<MovedPiece>& pieces(const std::array<std::size_t, 3>& of,
-                                        const Findings& stands, const Findings& looks);
+                                        const Findings& shown_in, const Findings& seen_through_by);
   void release(std::size_t job);
 
   const std::vector<Job>& jobs_;

@@ -49,16 +49,16 @@ std::string range_of(float low, float high, std::string_view format) {
 }
 
 /// A frame's camera; nothing where it has none in the world.
-std::optional<CameraOfFrame> camera_of(const FrameLooks& looks) {
-  if (!looks.world_known || !(looks.median_depth > 0)) return std::nullopt;
-  return CameraOfFrame{looks.number, looks.camera, looks.display, looks.median_depth};
+std::optional<CameraOfFrame> camera_of(const FrameTraits& traits) {
+  if (!traits.world_known || !(traits.median_depth > 0)) return std::nullopt;
+  return CameraOfFrame{traits.number, traits.camera, traits.display, traits.median_depth};
 }
 
 template <class Frames>
 std::vector<CameraStep> steps_of(const Frames& frames) {
   std::vector<CameraOfFrame> cameras;
   for (const auto& frame : frames)
-    if (const auto camera = camera_of(frame.looks)) cameras.push_back(*camera);
+    if (const auto camera = camera_of(frame.traits)) cameras.push_back(*camera);
   return camera_steps(std::move(cameras));
 }
 
@@ -88,14 +88,14 @@ std::string radius_of(const Frames& frames) {
   FramesByPlace other;
   float low = 0, high = 0, radius = 0;
   for (const auto& frame : frames) {
-    const FrameLooks& looks = frame.looks;
-    if (!looks.radius_alone || !(*looks.radius_alone > 0)) continue;
-    const float alone = *looks.radius_alone;
-    if (std::max(alone, looks.radius) <= kOtherRadius * std::min(alone, looks.radius)) continue;
-    radius = looks.radius;
+    const FrameTraits& traits = frame.traits;
+    if (!traits.radius_alone || !(*traits.radius_alone > 0)) continue;
+    const float alone = *traits.radius_alone;
+    if (std::max(alone, traits.radius) <= kOtherRadius * std::min(alone, traits.radius)) continue;
+    radius = traits.radius;
     low = other.empty() ? alone : std::min(low, alone);
     high = std::max(high, alone);
-    other[frame.place] = looks.number;
+    other[frame.place] = traits.number;
   }
   if (other.empty()) return "";
   return fmt::format(
@@ -107,34 +107,34 @@ std::string radius_of(const Frames& frames) {
 /// How much is guessed, where that is much in one frame at least.
 template <class Frames>
 std::string guessed_in(const Frames& frames) {
-  const auto share = [](const auto& frame) { return frame.looks.guessed.value_or(0); };
+  const auto share = [](const auto& frame) { return frame.traits.guessed.value_or(0); };
   const auto [least, most] = std::ranges::minmax_element(frames, {}, share);
-  if (most->looks.remedy.empty()) return "";
+  if (most->traits.remedy.empty()) return "";
   return fmt::format("{} of all directions are guessed{}; most in frame {}: {}",
                      range_of(share(*least), share(*most), "{:.2f}"),
-                     most->looks.in_shot ? ", before the frames around say what they found" : "",
-                     most->looks.number, most->looks.remedy);
+                     most->traits.in_shot ? ", before the frames around say what they found" : "",
+                     most->traits.number, most->traits.remedy);
 }
 
 }  // namespace
 
-std::vector<std::string> ShotReport::add(std::size_t place, const FrameLooks& looks) {
-  Frames& frames = views_[looks.view];
+std::vector<std::string> ShotReport::add(std::size_t place, const FrameTraits& traits) {
+  Frames& frames = views_[traits.view];
   std::vector<std::string> all, fresh;
-  if (!frames.empty()) all = changes(frames.back().looks, looks);
+  if (!frames.empty()) all = changes(frames.back().traits, traits);
   for (const std::string& change : all)
-    if (told_.add(place, looks.number, looks.view + change)) fresh.push_back(change);
-  frames.push_back({place, looks, std::move(all)});
+    if (told_.add(place, traits.number, traits.view + change)) fresh.push_back(change);
+  frames.push_back({place, traits, std::move(all)});
   return fresh;
 }
 
 std::vector<std::string> ShotReport::differences(const Frames& frames) {
   std::vector<std::pair<std::string, Values>> things;
   for (const Noted& frame : frames) {
-    for (const auto& [name, value] : frame.looks.properties()) {
+    for (const auto& [name, value] : frame.traits.properties()) {
       auto at = std::ranges::find(things, name, &decltype(things)::value_type::first);
       if (at == things.end()) at = things.insert(at, {name, {}});
-      add_value(at->second, value, frame.place, frame.looks.number);
+      add_value(at->second, value, frame.place, frame.traits.number);
     }
   }
   std::vector<std::string> lines;
@@ -164,15 +164,15 @@ void ShotReport::add_to(nlohmann::json& entries, const std::vector<std::string>&
       if (entry["frame"].is_null() || entry["view"] != view) continue;
       const int number = entry["frame"];
       const auto noted =
-          std::ranges::find(frames, number, [](const Noted& frame) { return frame.looks.number; });
+          std::ranges::find(frames, number, [](const Noted& frame) { return frame.traits.number; });
       if (noted == frames.end()) continue;
       const auto step = std::ranges::find(steps, number, &CameraStep::to);
       json& shot = entry["shot"] = {
           {"changes", noted->changes}, {"camera_step", nullptr}, {"camera_jumps", false}};
       if (step != steps.end())
         shot["camera_step"] = step->widths, shot["camera_jumps"] = step->jumps;
-      if (noted->looks.radius_alone) shot["radius_alone"] = *noted->looks.radius_alone;
-      if (noted->looks.guessed) shot["guessed"] = *noted->looks.guessed;
+      if (noted->traits.radius_alone) shot["radius_alone"] = *noted->traits.radius_alone;
+      if (noted->traits.guessed) shot["guessed"] = *noted->traits.guessed;
     }
   }
   if (!entries.empty() && entries.back().contains("shot"))

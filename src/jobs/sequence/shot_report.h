@@ -18,7 +18,7 @@ class ShotReport {
  public:
   /// Takes note of a frame, the `place`th of the run, as it was prepared; frames in their order.
   /// Returns how it differs from the one noted before: what no frame before has told.
-  std::vector<std::string> add(std::size_t place, const FrameLooks& looks);
+  std::vector<std::string> add(std::size_t place, const FrameTraits& traits);
 
   /// What differs, with the frames that it holds for: few lines, none where nothing does. Each
   /// follows the name of the sequence, as those of RepeatedWarnings do.
@@ -31,7 +31,7 @@ class ShotReport {
  private:
   struct Noted {
     std::size_t place;
-    FrameLooks looks;
+    FrameTraits traits;
     std::vector<std::string> changes;  ///< from the frame before in the run
   };
   using Frames = std::vector<Noted>;

@@ -129,11 +129,11 @@ std::optional<FoundCamera> pose_by_positions(const GBuffer& g, const Camera& giv
 }
 
 /// The camera of another frame of the sequence, moved to where P projects to its own pixels.
-std::optional<Camera> pose_beside(const GBuffer& g, const std::optional<CameraBeside>& beside,
+std::optional<Camera> pose_beside(const GBuffer& g, const std::optional<NeighbourCamera>& beside,
                                   GeometryReport& report) {
   if (!beside || !(beside->display == g.display_of_file())) return std::nullopt;
-  const auto posed = fit_pose_beside(to_grid(beside->camera, g.grid), g.position, g.valid, g.window,
-                                     rounding_of_positions(g));
+  const auto posed = fit_pose_near(to_grid(beside->camera, g.grid), g.position, g.valid, g.window,
+                                   rounding_of_positions(g));
   if (!posed) return std::nullopt;
   report.camera_source = fmt::format(
       "fitted from P with the lens of {}, and its pose where P leaves that open", beside->file);
@@ -146,7 +146,7 @@ std::optional<Camera> pose_beside(const GBuffer& g, const std::optional<CameraBe
 
 /// What was found on a grid in the pixels of the file, with the projection of `given` if any.
 FoundCamera on_file(FoundCamera found, const PixelGrid& grid, const Camera* given) {
-  for (Camera* camera : {&found.camera, &found.of_positions}) {
+  for (Camera* camera : {&found.camera, &found.position_camera}) {
     const Camera of_file = given ? *given : from_grid(*camera, grid);
     camera->fx = of_file.fx, camera->fy = of_file.fy;
     camera->cx = of_file.cx, camera->cy = of_file.cy;
@@ -187,8 +187,8 @@ FoundCamera find_under_options(const GBuffer& g, const Camera& given, const Came
 
 /// The camera that P and the header tell.
 FoundCamera find_without_options(const GBuffer& g, const std::vector<HeaderCamera>& header,
-                                 const std::optional<CameraBeside>& beside, const std::string& file,
-                                 GeometryReport& report) {
+                                 const std::optional<NeighbourCamera>& beside,
+                                 const std::string& file, GeometryReport& report) {
   if (const auto fitted = fit_camera(g, false)) {
     report.camera_source = "fitted from P";
     append(report.warnings, unused_of(g, true));
@@ -222,7 +222,7 @@ FoundCamera find_camera(const GBuffer& g, const CameraOptions& options, const st
   const FoundCamera found =
       given ? find_under_options(g, to_grid(*given, g.grid), options, file, report, is_fitted)
             : find_without_options(g, header, options.shot.camera, file, report);
-  report.residual = measure_residual(found.of_positions, g.position, g.valid, g.window);
+  report.residual = measure_residual(found.position_camera, g.position, g.valid, g.window);
   if (report.residual->median_px > 0.5) {
     report.warnings.push_back(
         fmt::format("camera ({}): half of the positions miss their pixels by {:.2g} px or more; "

@@ -95,9 +95,9 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
   return explains(camera, positions, valid, window, step) ? std::optional(camera) : std::nullopt;
 }
 
-std::optional<Camera> fit_pose_beside(const Camera& beside, const Plane<glm::vec3>& positions,
-                                      const Plane<unsigned char>& valid, const Window& window,
-                                      double step) {
+std::optional<Camera> fit_pose_near(const Camera& beside, const Plane<glm::vec3>& positions,
+                                    const Plane<unsigned char>& valid, const Window& window,
+                                    double step) {
   Samples samples = collect_samples(positions, valid, window);
   if (samples.items.empty()) return std::nullopt;
   const double unit = unit_of(beside, samples, window);

@@ -21,8 +21,8 @@ std::optional<Camera> fit_pose(const Camera& projection, const Plane<glm::vec3>&
 /// pixels; what P does not determine stays as in `beside`. The two are weighted by their precision,
 /// so that a pose that P determines in full is not drawn towards `beside`. Returns nothing if P
 /// does not come within half a pixel and `step`.
-std::optional<Camera> fit_pose_beside(const Camera& beside, const Plane<glm::vec3>& positions,
-                                      const Plane<unsigned char>& valid, const Window& window,
-                                      double step = 0);
+std::optional<Camera> fit_pose_near(const Camera& beside, const Plane<glm::vec3>& positions,
+                                    const Plane<unsigned char>& valid, const Window& window,
+                                    double step = 0);
 
 }  // namespace ssdo

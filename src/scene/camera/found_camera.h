@@ -12,7 +12,7 @@ namespace ssdo {
 /// unless P is stored in camera space and a file or the header gives the pose. Both are in the
 /// pixels of the file, whatever the grid of the G-buffer.
 struct FoundCamera {
-  Camera camera, of_positions;
+  Camera camera, position_camera;
   bool world_given = false;  ///< --camera or the header gave the pose, and so the world
   /// If the header gave the pose and P cannot prove it: the reading used, then the other readings
   /// that normals may decide for.

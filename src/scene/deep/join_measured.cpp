@@ -21,7 +21,7 @@
 #include <limits>
 #include <utility>
 
-#include "math/endless.h"
+#include "math/infinity.h"
 #include "parallel/tiles.h"
 #include "scene/normals/normals.h"
 #include "scene/same_surface.h"

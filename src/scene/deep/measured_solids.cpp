@@ -11,7 +11,7 @@
 
 #include "error.h"
 #include "io/exr/file/exr_parts.h"
-#include "math/endless.h"
+#include "math/infinity.h"
 #include "parallel/tiles.h"
 #include "scene/deep/ray_solids.h"
 #include "scene/gbuffer/background.h"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "error.h"
-#include "math/endless.h"
+#include "math/infinity.h"
 #include "scene/gbuffer/background.h"
 #include "scene/layers/depth_names.h"
 

@@ -12,7 +12,7 @@
 
 #include "scene/light/distant_source.h"
 #include "scene/light/lamps/lamp_points-inl.h"
-#include "scene/light/lamps/near_lamp-inl.h"
+#include "scene/light/lamps/local_lamp-inl.h"
 #include "scene/light/light.h"
 #include "simd/by_lane-inl.h"
 #include "simd/lanes-inl.h"
@@ -42,7 +42,7 @@ HWY_INLINE V received(const DistantSource& sun, const V3& normal) {
 
 HWY_INLINE V received(const Source& source, const V3& position, const V3& normal) {
   if (const DistantSource* distant = source.distant()) return received(*distant, normal);
-  if (const NearLamp* lamp = source.near_lamp()) return received(*lamp, position, normal);
+  if (const LocalLamp* lamp = source.local_lamp()) return received(*lamp, position, normal);
   if (const DistantLamp* lamp = source.distant_lamp()) return received(*lamp, normal);
   const Lanes3 positions(position), normals(normal);
   return by_lane([&](int lane)
@@ -51,7 +51,7 @@ HWY_INLINE V received(const Source& source, const V3& position, const V3& normal
 
 HWY_INLINE SourcePoints seen(const Source& source, const V3& position, const V3& point) {
   if (source.distant()) return {point, set(SourcePoint().distance), set(SourcePoint().weight)};
-  if (const NearLamp* lamp = source.near_lamp()) return seen(*lamp, position, point);
+  if (const LocalLamp* lamp = source.local_lamp()) return seen(*lamp, position, point);
   if (const DistantLamp* lamp = source.distant_lamp())
     return {point, set(SourcePoint().distance), set(lamp->weight())};
   const Lanes3 positions(position), points(point);
@@ -66,7 +66,7 @@ HWY_INLINE SourcePoints seen(const Source& source, const V3& position, const V3&
 }
 
 HWY_INLINE SourceCones cones(const Source& source, const V3& position) {
-  if (const NearLamp* lamp = source.near_lamp()) return cones(*lamp, position);
+  if (const LocalLamp* lamp = source.local_lamp()) return cones(*lamp, position);
   if (source.distant() || source.distant_lamp()) {
     const SourceCone cone = source.cone(glm::vec3(0));
     return {set(cone.to), set(cone.angular_radius), set(std::sin(cone.angular_radius))};
@@ -81,8 +81,8 @@ HWY_INLINE SourceCones cones(const Source& source, const V3& position) {
           by_lane([&](int lane) HWY_ATTR { return std::sin(found[lane].angular_radius); })};
 }
 
-/// Source::taken_at() of `count` pixels from `first` on; 1 in other lanes.
-HWY_INLINE V taken_at(const Source& source, std::size_t first, int count) {
+/// Source::link_weight() of `count` pixels from `first` on; 1 in other lanes.
+HWY_INLINE V link_weight(const Source& source, std::size_t first, int count) {
   return source.receivers ? load_first(count, &(*source.receivers)[first]) : set(1);
 }
 

@@ -192,7 +192,7 @@ glm::vec3 Light::unoccluded_in(std::size_t pixel, const glm::vec3& position,
                                const glm::vec3& normal) const {
   glm::vec3 sum = unoccluded_sky(normal);
   for (const auto& source : sources)
-    sum += source->taken_at(pixel) * source->unoccluded(position, normal);
+    sum += source->link_weight(pixel) * source->unoccluded(position, normal);
   return sum;
 }
 

@@ -14,7 +14,7 @@ namespace ssdo {
 
 struct DistantLamp;
 struct DistantSource;
-struct NearLamp;
+struct LocalLamp;
 
 /// A point of a source as a receiver sees it.
 struct SourcePoint {
@@ -45,14 +45,14 @@ struct Source {
 
   std::string name;         ///< of its layers; empty: a part of the environment
   glm::vec3 irradiance{0};  ///< over pi, of a surface for which received() is 1
-  float held = 0;           ///< share of its light that spherical harmonics would keep in its place
+  float sh_fraction = 0;    ///< share of its light that spherical harmonics would keep in its place
 
   /// What it lights, 0..1 by pixel of the scene's geometry: the lamp's `receive`. Null: everything.
   std::shared_ptr<const Plane<float>> receivers;
   std::string receive;  ///< the text of that selection, by which other views know it
 
   /// The share of its light that reaches the surface of a pixel with nothing in its way.
-  float taken_at(std::size_t pixel) const { return receivers ? (*receivers)[pixel] : 1.0f; }
+  float link_weight(std::size_t pixel) const { return receivers ? (*receivers)[pixel] : 1.0f; }
 
   virtual float received(const glm::vec3& position, const glm::vec3& normal) const = 0;
 
@@ -68,7 +68,7 @@ struct Source {
   virtual const DistantSource* distant() const { return nullptr; }
 
   /// This source if it is such a lamp, which has functions for vectors; else null.
-  virtual const NearLamp* near_lamp() const { return nullptr; }
+  virtual const LocalLamp* local_lamp() const { return nullptr; }
   virtual const DistantLamp* distant_lamp() const { return nullptr; }
 
   SourcePoint sample(const glm::vec3& position, const glm::vec2& u) const {

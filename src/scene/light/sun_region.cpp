@@ -41,9 +41,9 @@ int step_of(float radiance, float peak) {
 
 }  // namespace
 
-SunGrowth::SunGrowth(const SkyGrid& grid, HeldRadiance held)
+SunGrowth::SunGrowth(const SkyGrid& grid, ShRadiance sh_radiance)
     : grid_(grid),
-      held_(std::move(held)),
+      sh_radiance_(std::move(sh_radiance)),
       reached_(grid.patches.size()),
       by_piece_(grid.patches.size()) {}
 
@@ -61,7 +61,7 @@ bool SunGrowth::flood(int step, const glm::vec3& start, Sums& sums) {
     const float power = brightness(patch.power);
     sums.light += glm::dvec3(power * patch.direction);
     sums.power += double(power);
-    sums.missing += double(power - held_(at) * patch.solid_angle);
+    sums.missing += double(power - sh_radiance_(at) * patch.solid_angle);
     sums.solid_angle += double(patch.solid_angle);
     if (sums.solid_angle > most || glm::dot(patch.direction, start) < farthest) return false;
     grid_.for_each_neighbour(at, [&](std::size_t next) {

@@ -27,7 +27,7 @@ struct SunRegion {
 };
 
 /// Radiance that harmonics hold in a patch.
-using HeldRadiance = std::function<float(std::size_t patch)>;
+using ShRadiance = std::function<float(std::size_t patch)>;
 
 /// The least irradiance over pi that harmonics must miss of a source with this middle.
 using LeastMissing = std::function<float(const glm::vec3& middle)>;
@@ -35,7 +35,7 @@ using LeastMissing = std::function<float(const glm::vec3& middle)>;
 /// Finds the patches around a bright one that form a source.
 class SunGrowth {
  public:
-  SunGrowth(const SkyGrid& grid, HeldRadiance held);
+  SunGrowth(const SkyGrid& grid, ShRadiance sh_radiance);
 
   /// Lowers the threshold from the radiance of `seed` on, step by step, and adds what is connected.
   /// Returns the first region whose `missing` is at least `least` and to which half the threshold
@@ -56,7 +56,7 @@ class SunGrowth {
   SunRegion region_of(const Sums& sums) const;
 
   const SkyGrid& grid_;
-  HeldRadiance held_;
+  ShRadiance sh_radiance_;
   std::vector<std::size_t> patches_;              ///< of the region, as they were reached
   std::vector<std::vector<std::size_t>> border_;  ///< what touches it, by the step that takes it
   std::vector<bool> reached_;

@@ -25,7 +25,8 @@ class SunTexels {
   const std::shared_ptr<const Plane<glm::vec3>>& rest() const { return rest_; }
 
   /// The light by which the texels of `windows` exceed the sky around them, as a source; nothing if
-  /// they do not. `threshold` is the radiance of what surely belongs to it. Share and held are 0.
+  /// they do not. `threshold` is the radiance of what surely belongs to it. Share and sh_fraction
+  /// are 0.
   std::optional<DistantSource> measure(const std::vector<Window>& windows, float threshold,
                                        const Surroundings& around) const;
 

@@ -28,8 +28,8 @@ constexpr int kCoarseColumns = 128;  ///< patches of 2.8 degrees, for harmonics
 /// Shares of the irradiance, that is, how much darker a shadow is: a source of kLeastShare stays in
 /// the map, one of kWholeShare is taken out whole. Between them a smoothly growing part is, so that
 /// no shadow appears at once where a sun comes out of the haze. For light that harmonics hold,
-/// kLeastShareHeld takes the place of kLeastShare.
-constexpr float kLeastShare = 0.02f, kLeastShareHeld = 0.045f, kWholeShare = 0.05f;
+/// kLeastShareInSh takes the place of kLeastShare.
+constexpr float kLeastShare = 0.02f, kLeastShareInSh = 0.045f, kWholeShare = 0.05f;
 constexpr float kLeastTaken = 0.001f;  ///< of the irradiance: less is not worth its rays
 
 const float kExamined = glm::radians(5.0f);  ///< around a place that is no source
@@ -37,9 +37,9 @@ const float kExamined = glm::radians(5.0f);  ///< around a place that is no sour
 using Patch = Environment::Patch;
 
 /// The part of a source of this share of the irradiance that is taken out, 0..1. Harmonics hold
-/// `held` of its light.
-float part_taken(float share, float held) {
-  const float least = kLeastShare + held * (kLeastShareHeld - kLeastShare);
+/// `sh_fraction` of its light.
+float part_taken(float share, float sh_fraction) {
+  const float least = kLeastShare + sh_fraction * (kLeastShareInSh - kLeastShare);
   const float t = std::clamp((share - least) / (kWholeShare - least), 0.0f, 1.0f);
   return t * t * (3 - 2 * t);
 }
@@ -54,7 +54,7 @@ class SunSearch {
         coarse_(fine_.merged(kCoarseColumns)),
         all_(coarse_.patches),
         examined_(coarse_.patches.size()),
-        held_(coarse_.patches.size()) {}
+        sh_radiance_(coarse_.patches.size()) {}
 
   SunsAndRest run();
 
@@ -73,7 +73,7 @@ class SunSearch {
   SkyGrid fine_, coarse_;   ///< without the sources found so far
   std::vector<Patch> all_;  ///< with them
   std::vector<bool> examined_;
-  std::vector<float> held_;  ///< radiance that harmonics of the rest have, by coarse patch
+  std::vector<float> sh_radiance_;  ///< radiance that harmonics of the rest have, by coarse patch
 };
 
 void SunSearch::project_rest() {
@@ -83,10 +83,10 @@ void SunSearch::project_rest() {
     const double power = double(brightness(patch.power));
     for (int i = 0; i < kShCount; ++i) coefficients[i] += double(basis[i]) * power;
   }
-  for (std::size_t p = 0; p < held_.size(); ++p) {
+  for (std::size_t p = 0; p < sh_radiance_.size(); ++p) {
     const std::array<float, kShCount> basis = sh_basis(coarse_.patches[p].direction);
-    held_[p] = 0;
-    for (int i = 0; i < kShCount; ++i) held_[p] += float(coefficients[i]) * basis[i];
+    sh_radiance_[p] = 0;
+    for (int i = 0; i < kShCount; ++i) sh_radiance_[p] += float(coefficients[i]) * basis[i];
   }
 }
 
@@ -102,9 +102,9 @@ float SunSearch::irradiance_towards(const glm::vec3& d) const {
 std::optional<std::size_t> SunSearch::most_missing() const {
   std::optional<std::size_t> found;
   float most = 0;
-  for (std::size_t i = 0; i < held_.size(); ++i) {
+  for (std::size_t i = 0; i < sh_radiance_.size(); ++i) {
     const Patch& patch = coarse_.patches[i];
-    const float missing = brightness(patch.power) - held_[i] * patch.solid_angle;
+    const float missing = brightness(patch.power) - sh_radiance_[i] * patch.solid_angle;
     if (examined_[i] || missing <= most) continue;
     most = missing, found = i;
   }
@@ -114,10 +114,10 @@ std::optional<std::size_t> SunSearch::most_missing() const {
 /// Whether harmonics miss enough within reach of a source that has `d` at its border.
 bool SunSearch::may_be_source(const glm::vec3& d) const {
   float missing = 0;
-  for (std::size_t i = 0; i < held_.size(); ++i) {
+  for (std::size_t i = 0; i < sh_radiance_.size(); ++i) {
     const Patch& patch = coarse_.patches[i];
     if (glm::dot(patch.direction, d) < std::cos(2 * kMostSunRadius)) continue;
-    missing += std::max(0.0f, brightness(patch.power) - held_[i] * patch.solid_angle) / kPif;
+    missing += std::max(0.0f, brightness(patch.power) - sh_radiance_[i] * patch.solid_angle) / kPif;
   }
   return missing > kLeastShare * irradiance_towards(d);
 }
@@ -171,8 +171,8 @@ std::optional<DistantSource> SunSearch::take(const SunRegion& region) {
   if (!sun) return std::nullopt;
   const float all = irradiance_towards(sun->direction);
   const float light = std::min(brightness(sun->irradiance), region.missing);
-  sun->held = std::clamp(1 - region.missing / region.light, 0.0f, 1.0f);
-  const float part = region.weight * part_taken(light / all, sun->held);
+  sun->sh_fraction = std::clamp(1 - region.missing / region.light, 0.0f, 1.0f);
+  const float part = region.weight * part_taken(light / all, sun->sh_fraction);
   sun->irradiance *= part;
   sun->share = brightness(sun->irradiance) / all;
   if (!(sun->share > kLeastTaken)) return std::nullopt;
@@ -187,7 +187,7 @@ std::optional<DistantSource> SunSearch::take(const SunRegion& region) {
 SunsAndRest SunSearch::run() {
   std::vector<DistantSource> suns;
   project_rest();
-  SunGrowth growth(fine_, [&](std::size_t patch) { return held_[coarse_of(patch)]; });
+  SunGrowth growth(fine_, [&](std::size_t patch) { return sh_radiance_[coarse_of(patch)]; });
   for (int i = 0; i < kMostTries && suns.size() < kMostSuns; ++i) {
     const std::optional<std::size_t> place = most_missing();
     if (!place) break;

@@ -32,7 +32,7 @@ Verdict judge(const GBuffer& g, const Surfaces& surfels, const HeaderCamera& rea
   constexpr const char* kWorld = "the world";
   std::vector<NamedRotation> spaces = {{glm::mat3(1), "camera space"}};
   if (!g.position.empty())
-    spaces.push_back({glm::mat3(found.of_positions.rotation), "the space of P"});
+    spaces.push_back({glm::mat3(found.position_camera.rotation), "the space of P"});
   spaces.push_back({glm::mat3(reading.camera.rotation), kWorld});
   const NormalSpace space = find_normal_space(g.normal, surfels, spaces, found.camera.orthographic);
   if (!space.is_known()) return Verdict::none;
@@ -52,7 +52,7 @@ void set_pose(const Camera& pose, Placement& placement) {
 /// The frame stays in the space of P, or of the camera where there is depth alone.
 void refuse(const HeaderCamera& reading, bool has_positions, GeometryReport& report) {
   Placement& placement = report.placement;
-  set_pose(has_positions ? placement.of_positions : Camera(), placement);
+  set_pose(has_positions ? placement.position_camera : Camera(), placement);
   placement.world_given = false;
   report.header.reset();
   report.warnings.push_back(

@@ -63,10 +63,10 @@ void mark(OtherPicture& picture, const Selection& selection, unsigned char with,
   if (selection.empty()) return;
   try {
     const Plane<float> coverage = selected_coverage(selection, in, picture.window, {});
-    if (picture.taken.empty())
-      picture.taken = Plane<unsigned char>(coverage.width, coverage.height, 0);
+    if (picture.object_flags.empty())
+      picture.object_flags = Plane<unsigned char>(coverage.width, coverage.height, 0);
     for (std::size_t i = 0; i < coverage.size(); ++i)
-      if (coverage[i] > 0) picture.taken[i] |= with;
+      if (coverage[i] > 0) picture.object_flags[i] |= with;
   } catch (const Error& error) {
     picture.not_taken.push_back(fmt::format("{}: shows what {} takes out: {}", picture.file,
                                             selection.option, error.what()));
@@ -105,10 +105,10 @@ void mark_backdrop(OtherPicture& picture, const Geometry& geometry, BackdropChoi
   if (!takes_any && choice != BackdropChoice::leave_out) return;
   const std::optional<Backdrop> found = find_backdrop(geometry);
   if (!found) return;
-  picture.taken = Plane<unsigned char>(found->coverage.width, found->coverage.height, 0);
+  picture.object_flags = Plane<unsigned char>(found->coverage.width, found->coverage.height, 0);
   for (std::size_t i = 0; i < found->coverage.size(); ++i)
     if (found->coverage[i] > 0)
-      picture.taken[i] = takes_any || found->is_far() ? kBackdrop : kNearBackdrop;
+      picture.object_flags[i] = takes_any || found->is_far() ? kBackdrop : kNearBackdrop;
 }
 
 /// What is to be found in a picture.

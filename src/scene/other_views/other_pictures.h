@@ -15,8 +15,8 @@
 
 namespace ssdo {
 
-/// A bit of OtherPicture::taken beside those of other_view.h: what has the shape of a backdrop, and
-/// is not far enough by this picture alone.
+/// A bit of OtherPicture::object_flags beside those of other_view.h: what has the shape of a
+/// backdrop, and is not far enough by this picture alone.
 inline constexpr unsigned char kNearBackdrop = 8;
 
 /// The other pictures of a run: each is read once, and kept as long as frames will ask for it.

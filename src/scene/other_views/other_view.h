@@ -31,7 +31,7 @@ struct OtherPicture {
   Plane<float> depth;       ///< Camera::depth_of; infinite where there is no surface
   Plane<HalfColor> albedo;  ///< empty where the file has none
   /// The bits above, by pixel; empty: none anywhere.
-  Plane<unsigned char> taken;
+  Plane<unsigned char> object_flags;
   /// What blocks the light of linked lamps, by the text of the selection: 1 in pixels that show a
   /// blocker. Selections that the picture does not know are missing.
   std::map<std::string, Plane<unsigned char>> casts;

@@ -34,7 +34,7 @@
 #include <limits>
 #include <numbers>
 
-#include "math/endless.h"
+#include "math/infinity.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/same_surface.h"

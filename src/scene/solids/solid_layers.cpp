@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "math/endless.h"
+#include "math/infinity.h"
 #include "scene/solids/solids.h"
 
 #include <algorithm>

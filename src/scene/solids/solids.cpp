@@ -34,7 +34,7 @@
 #include <limits>
 #include <utility>
 
-#include "math/endless.h"
+#include "math/infinity.h"
 #include "math/pixel_grid.h"
 #include "math/whole_division.h"
 #include "parallel/planes.h"

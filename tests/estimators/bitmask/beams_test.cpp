@@ -76,7 +76,7 @@ struct LitThings {
                    .extend_offscreen = true,
                    .receivers = receivers},
                   {})
-        .shares.suns;
+        .visibility.sources;
   }
 
   Camera camera;
@@ -99,7 +99,7 @@ Plane<float> arrives(const MarchScene& scene, const Source& source, Side side, c
   const auto points = points_of(source, 2, 0);
   SourceJob job{march, bounds, points, source, {}};
   job.together = together;
-  SourceShares found = find_source(job, rows, {});
+  SourceVisibility found = find_source(job, rows, {});
   if (side == Side::unseen) find_unseen_light(job, scene, rows, found);
   return Raster(scene).picture(std::move(side == Side::seen ? found.share : found.unseen), 1);
 }

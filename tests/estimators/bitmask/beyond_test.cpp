@@ -80,34 +80,34 @@ double on_floor(const View& view, const Environment& environment, double y0, dou
 constexpr int kFromLeft = 0, kFromBehindLeft = 52, kRow30 = 10, kRow45 = 7;
 
 TEST(BitmaskBeyond, TheSkyComesThroughByHalfAndASunDoesNot) {
-  const auto pass = [](float past, float held) {
+  const auto pass = [](float past, float sh_fraction) {
     DistantSource sun;
-    sun.held = held;
-    return pass_beyond(past, sun);
+    sun.sh_fraction = sh_fraction;
+    return offscreen_visibility(past, sun);
   };
-  EXPECT_FLOAT_EQ(pass(1, 0).through, 0);
-  EXPECT_FLOAT_EQ(pass(1, 0.125f).through, 0.25f);
-  EXPECT_FLOAT_EQ(pass(0.5f, 0).past, 0.5f);
-  EXPECT_FLOAT_EQ(pass(0.5f, 1).through, 0.5f);
-  EXPECT_FLOAT_EQ(pass(0.5f, 1).past, 1);
+  EXPECT_FLOAT_EQ(pass(1, 0).blocked, 0);
+  EXPECT_FLOAT_EQ(pass(1, 0.125f).blocked, 0.25f);
+  EXPECT_FLOAT_EQ(pass(0.5f, 0).unblocked, 0.5f);
+  EXPECT_FLOAT_EQ(pass(0.5f, 1).blocked, 0.5f);
+  EXPECT_FLOAT_EQ(pass(0.5f, 1).unblocked, 1);
 }
 
 TEST(BitmaskBeyond, APlaceThatIsClosedAgainstTheSkyIsOpenToALamp) {
-  const PassBeyond pass = pass_beyond(0.2f, PointSource(glm::vec3(0, 1, 2)));
-  EXPECT_FLOAT_EQ(pass.past, 1);
-  EXPECT_FLOAT_EQ(pass.through, 0);
+  const OffscreenVisibility pass = offscreen_visibility(0.2f, PointSource(glm::vec3(0, 1, 2)));
+  EXPECT_FLOAT_EQ(pass.unblocked, 1);
+  EXPECT_FLOAT_EQ(pass.blocked, 0);
 }
 
 /// What a frame of these scenes tells, seen level or from above.
-Openness openness_of(const Surface& scene, double looks_down_by, const Window& receivers = {}) {
+Enclosure enclosure_of(const Surface& scene, double looks_down_by, const Window& receivers = {}) {
   const Window window{0, 0, 96, 64};
   const Camera camera = look_at(camera_from_fov(60, window, 1), {0, 0, 1.6},
                                 {0, 5, 1.6 - 5 * looks_down_by}, {0, 0, 1});
   const Geometry g = geometry_of(scene, camera, window);
   const MarchScene march_scene = make_march_scene(g, guess_solids(g), receivers);
-  Openness sum;
-  add_openness(march_scene, window, g.world_to_camera * glm::vec3(0, 0, 1), kNoLimit,
-               march_scene.raster(), sum);
+  Enclosure sum;
+  add_enclosure(march_scene, window, g.world_to_camera * glm::vec3(0, 0, 1), kNoLimit,
+                march_scene.raster(), sum);
   return sum;
 }
 
@@ -116,21 +116,21 @@ TEST(BitmaskBeyond, OnlyAClosedPlaceDimsASun) {
   const Surface left = plane({-2.5, 0, 0}, {1, 0, 0}), right = plane({2.5, 0, 0}, {-1, 0, 0}),
                 room = all_of({floor, left, right, back, plane({0, 0, 2.6}, {0, 0, -1})}),
                 low = all_of({floor, cut(back, [](const glm::dvec3&p) { return p.z < 2.4; })});
-  const double in_room = double(sun_past_beyond(openness_of(room, 0)));
+  const double in_room = double(offscreen_sun_visibility(enclosure_of(room, 0)));
   fmt::print("a sun in a room: {:.3f}\n", in_room);
   EXPECT_LT(in_room, 0.1);
-  EXPECT_EQ(sun_past_beyond(openness_of(floor, 0)), 1);
-  EXPECT_GT(sun_past_beyond(openness_of(low, 0)), 0.95f) << "there is sky over the wall";
-  EXPECT_EQ(sun_past_beyond(openness_of(room, 1)), 1)
+  EXPECT_EQ(offscreen_sun_visibility(enclosure_of(floor, 0)), 1);
+  EXPECT_GT(offscreen_sun_visibility(enclosure_of(low, 0)), 0.95f) << "there is sky over the wall";
+  EXPECT_EQ(offscreen_sun_visibility(enclosure_of(room, 1)), 1)
       << "nothing of the walls is above the horizon";
-  EXPECT_EQ(sun_past_beyond(Openness{}), 1) << "no surfaces";
+  EXPECT_EQ(offscreen_sun_visibility(Enclosure{}), 1) << "no surfaces";
   // Walls alone, and sky over them: W / (W + 10 S) of 1 - (A / 0.6)^2 is lost.
-  Openness dense{.ao = 20, .surfaces = 100, .walls = 1, .above = 50, .pixels = 100};
-  EXPECT_NEAR(sun_past_beyond(dense), 0.1111, 1e-4);
+  Enclosure dense{.ao = 20, .surfaces = 100, .walls = 1, .above = 50, .pixels = 100};
+  EXPECT_NEAR(offscreen_sun_visibility(dense), 0.1111, 1e-4);
   dense.sky = 0.5;
-  EXPECT_NEAR(sun_past_beyond(dense), 0.8519, 1e-4);
+  EXPECT_NEAR(offscreen_sun_visibility(dense), 0.8519, 1e-4);
   // The frame decides, not who asks.
-  EXPECT_EQ(sun_past_beyond(openness_of(room, 0, {10, 20, 30, 40})), float(in_room));
+  EXPECT_EQ(offscreen_sun_visibility(enclosure_of(room, 0, {10, 20, 30, 40})), float(in_room));
 }
 
 TEST(BitmaskBeyond, AWallThatTheBorderShowsDoesNotHideASunAboveIt) {
@@ -332,8 +332,8 @@ TEST(BitmaskBeyond, BrokenPixelsTellNothing) {
   EXPECT_GT(extents[40].most[2], 10 * known[40].most[2]);
 
   const MarchScene march_scene = make_march_scene(g, guess_solids(g));
-  Openness sum;
-  add_openness(march_scene, kWide, {0, 1, 0}, kNoLimit, march_scene.raster(), sum);
+  Enclosure sum;
+  add_enclosure(march_scene, kWide, {0, 1, 0}, kNoLimit, march_scene.raster(), sum);
   EXPECT_GT(sum.surfaces, 0);
   EXPECT_EQ(sum.pixels, sum.surfaces);
   EXPECT_EQ(sum.sky, 0);

@@ -41,15 +41,15 @@ inline Plane<glm::vec3> specular_of(const std::string& method, const Scene& scen
 /// What is mirrored of light with nothing in its way.
 inline Plane<glm::vec3> unoccluded(const Scene& scene, double roughness, double ior = kMirror) {
   Products all;
-  all.shares.mirror = std::make_shared<const MirrorModel>(
+  all.visibility.mirror = std::make_shared<const MirrorModel>(
       scene, request_of(find_method("bitmask"), roughness, ior));
   const Surfaces& surfaces = scene.geometry.surfaces;
   all.specular = Plane<glm::vec3>(surfaces.width, surfaces.height);
-  all.shares.mirrored_sky = all.specular;
-  std::fill(all.shares.mirrored_sky.pixels.begin(), all.shares.mirrored_sky.pixels.end(),
+  all.visibility.mirrored_sky = all.specular;
+  std::fill(all.visibility.mirrored_sky.pixels.begin(), all.visibility.mirrored_sky.pixels.end(),
             glm::vec3(1));
-  all.shares.suns.assign(scene.light.sources.size(),
-                         Plane<float>(kWindow.width(), kWindow.height(), 1.0f));
+  all.visibility.sources.assign(scene.light.sources.size(),
+                                Plane<float>(kWindow.width(), kWindow.height(), 1.0f));
   add_specular(all, scene);
   return all.specular;
 }

@@ -17,7 +17,7 @@ TEST(FrameOccluders, AreSharedByLampsThatNameTheSame) {
   scene.solids = guess_solids(scene.geometry);
   const auto one = std::make_shared<const Scene>(scene),
              other = std::make_shared<const Scene>(scene);
-  scene.blockers = {{0, one}, {1, other}, {2, one}};
+  scene.linked_occluders = {{0, one}, {1, other}, {2, one}};
   const FrameOccluders occluders(scene, kNoLimit);
   ASSERT_NE(occluders.named_by(0), nullptr);
   EXPECT_EQ(occluders.named_by(2), occluders.named_by(0));

@@ -191,13 +191,13 @@ TEST(PoseBeside, BringsFewPixelsToTheirPlaces) {
                                line}) {
       SCOPED_TRACE(testing::Message() << lens.orthographic << " " << pixels.size());
       const Picture still = with_pixels(take_picture(still_life(), beside, kWindow), pixels);
-      const auto same = fit_pose_beside(beside, still.position, still.valid, kWindow);
+      const auto same = fit_pose_near(beside, still.position, still.valid, kWindow);
       ASSERT_TRUE(same);
       EXPECT_LT(turn_between(*same, beside), 1e-5);
       Camera other =
           look_at(lens, beside.origin + glm::dvec3(0.2, 0.1, 0), {0.1, 0, 0.5}, {0, 0, 1});
       const Picture moved = with_pixels(take_picture(still_life(), other, kWindow), pixels);
-      const auto found = fit_pose_beside(beside, moved.position, moved.valid, kWindow);
+      const auto found = fit_pose_near(beside, moved.position, moved.valid, kWindow);
       ASSERT_TRUE(found);
       EXPECT_LT(measure_residual(*found, moved.position, moved.valid, kWindow).max_px, 0.01);
       EXPECT_LT(turn_between(*found, other), 1.2 * turn_between(beside, other));
@@ -222,7 +222,7 @@ TEST(PoseBeside, OfPixelsThatTellLittleIsThatBeside) {
       const double pixel = glm::distance(glm::dvec3(p), beside.origin) / beside.fx;
       p += glm::vec3(pixel * glm::dvec3(off_px(random), off_px(random), off_px(random)));
     }
-    const auto found = fit_pose_beside(beside, picture.position, picture.valid, kWindow);
+    const auto found = fit_pose_near(beside, picture.position, picture.valid, kWindow);
     ASSERT_TRUE(found);
     most = std::max(most, turn_between(*found, beside));
   }
@@ -237,7 +237,7 @@ TEST(PoseBeside, OfAPlaneIsThatOfItsOwnPixels) {
     const Picture flat = take_picture(plane({}, {0, 0, 1}), above(lens), kWindow);
     const Camera beside =
         look_at(lens, flat.camera.origin + glm::dvec3(1, 0.5, -0.3), {0.4, 0, 0.2}, {0, 0, 1});
-    const auto found = fit_pose_beside(beside, flat.position, flat.valid, kWindow);
+    const auto found = fit_pose_near(beside, flat.position, flat.valid, kWindow);
     ASSERT_TRUE(found);
     EXPECT_LT(turn_between(*found, flat.camera), 1e-3) << lens.orthographic;
   }
@@ -247,7 +247,7 @@ TEST(PoseBeside, IsNoneWhereTheLensIsAnother) {
   const Picture flat =
       take_picture(plane({}, {0, 0, 1}), above(camera_from_fov(50, kWindow, 1)), kWindow);
   EXPECT_FALSE(
-      fit_pose_beside(above(camera_from_fov(20, kWindow, 1)), flat.position, flat.valid, kWindow));
+      fit_pose_near(above(camera_from_fov(20, kWindow, 1)), flat.position, flat.valid, kWindow));
 }
 
 /// Six pixels of a ball fit an orthographic camera that looks elsewhere; a hundred tell their own.

@@ -107,12 +107,12 @@ TEST(TakeSuns, FindsDiscsOfAnySize) {
     }
     EXPECT_LT(off, 0.03) << radius;
     EXPECT_NEAR(sun.share, 0.5f / 0.85f, 0.15f) << radius;
-    EXPECT_GT(sun.held, radius < 5 ? 0 : 0.02);
-    EXPECT_LT(sun.held, radius < 5 ? 0.1 : 0.7);
+    EXPECT_GT(sun.sh_fraction, radius < 5 ? 0 : 0.02);
+    EXPECT_LT(sun.sh_fraction, radius < 5 ? 0.1 : 0.7);
     expect_whole(map);
     const double error = unoccluded_error(map);
     fmt::print("disc of {:.2f} degrees: unoccluded off by {:.1e}, {:.2f} held by harmonics\n",
-               radius, error, sun.held);
+               radius, error, sun.sh_fraction);
     EXPECT_LT(error, 1e-3) << radius;
   }
 }

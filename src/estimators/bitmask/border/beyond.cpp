@@ -41,8 +41,8 @@ SlicePattern mean_ao_pattern(const Interleaving& layout, const Window& display) 
   return {layout, display, kSlices, kSteps, 0, kPeriod};
 }
 
-void add_openness(const MarchScene& scene, const Window& display, const glm::vec3& up, float radius,
-                  const Window& rows, Openness& sum) {
+void add_enclosure(const MarchScene& scene, const Window& display, const glm::vec3& up,
+                   float radius, const Window& rows, Enclosure& sum) {
   const Interleaving& layout = scene.layout;
   const SlicePattern sparse = mean_ao_pattern(layout, display);
   InterleavedPlane ao(layout);
@@ -68,11 +68,11 @@ void add_openness(const MarchScene& scene, const Window& display, const glm::vec
   }
 }
 
-void add_openness(const Scene& band, const Request& request, Openness& sum) {
+void add_enclosure(const Scene& band, const Request& request, Enclosure& sum) {
   const MarchScene scene = make_march_scene(band.casters(), band.solids, request.receivers,
-                                            band.casting ? &band.geometry : nullptr);
-  add_openness(scene, band.geometry.display, up_in_camera(band), request.radius, scene.receivers,
-               sum);
+                                            band.caster_surfaces ? &band.geometry : nullptr);
+  add_enclosure(scene, band.geometry.display, up_in_camera(band), request.radius, scene.receivers,
+                sum);
 }
 
 glm::vec3 up_in_camera(const Scene& scene) {
@@ -92,7 +92,7 @@ MayMeetPlane met_by_rays_to_sources(const Light& light) {
   };
 }
 
-bool needs_openness(const Scene& scene, const Request& request) {
+bool needs_enclosure(const Scene& scene, const Request& request) {
   const ProductSet& products = request.products;
   const auto& sources = scene.light.sources;
   const bool has_far = std::any_of(sources.begin(), sources.end(),
@@ -104,31 +104,33 @@ bool needs_openness(const Scene& scene, const Request& request) {
          request.extend_offscreen && !all_is_shown;
 }
 
-bool band_needs_openness(const Scene& overview, const Request& request) {
+bool band_needs_enclosure(const Scene& overview, const Request& request) {
   // The mean of an overview is off by less.
   constexpr double kOff = 0.1;
-  const Openness& frame = request.around_band->far->openness;
-  return needs_openness(overview, request) && frame.ao < (kOpenFrame + kOff) * frame.surfaces;
+  const Enclosure& frame = request.around_band->far->enclosure;
+  return needs_enclosure(overview, request) && frame.ao < (kOpenFrame + kOff) * frame.surfaces;
 }
 
-Openness openness_of(const MarchScene& scene, const Scene& frame, float radius) {
-  Openness sum;
-  add_openness(scene, frame.geometry.display, up_in_camera(frame), radius, scene.raster(), sum);
+Enclosure enclosure_of(const MarchScene& scene, const Scene& frame, float radius) {
+  Enclosure sum;
+  add_enclosure(scene, frame.geometry.display, up_in_camera(frame), radius, scene.raster(), sum);
   return sum;
 }
 
-float sun_past_beyond_of(const Openness& frame, const Scene& scene, const Request& request) {
-  return needs_openness(scene, request) ? sun_past_beyond(frame) : 1;
+float offscreen_sun_visibility_of(const Enclosure& frame, const Scene& scene,
+                                  const Request& request) {
+  return needs_enclosure(scene, request) ? offscreen_sun_visibility(frame) : 1;
 }
 
-float sun_past_beyond(const MarchScene& scene, const Scene& frame, const Request& request) {
-  if (!needs_openness(frame, request)) return 1;
+float offscreen_sun_visibility(const MarchScene& scene, const Scene& frame,
+                               const Request& request) {
+  if (!needs_enclosure(frame, request)) return 1;
   if (const auto& band = request.around_band)
-    return sun_past_beyond(band->openness.value_or(band->far->openness));
-  return sun_past_beyond(openness_of(scene, frame, request.radius));
+    return offscreen_sun_visibility(band->enclosure.value_or(band->far->enclosure));
+  return offscreen_sun_visibility(enclosure_of(scene, frame, request.radius));
 }
 
-float sun_past_beyond(const Openness& frame) {
+float offscreen_sun_visibility(const Enclosure& frame) {
   if (frame.surfaces == 0) return 1;
   const double open = std::min(1.0, frame.ao / frame.surfaces / double(kOpenFrame)),
                told = std::min(1.0, frame.above / (kAboveTellsAll * frame.pixels)),
@@ -137,11 +139,11 @@ float sun_past_beyond(const Openness& frame) {
   return float(1 - closed * (1 - open * open));
 }
 
-PassBeyond pass_beyond(float sun_past, const Source& source) {
+OffscreenVisibility offscreen_visibility(float offscreen_sun, const Source& source) {
   constexpr float kSky = 0.25f;
   if (!is_endlessly_far(source)) return {};
-  const float sky = std::min(1.0f, source.held / kSky);
-  return {sun_past + sky * (1 - sun_past), sky * kLightThroughBeyond};
+  const float sky = std::min(1.0f, source.sh_fraction / kSky);
+  return {offscreen_sun + sky * (1 - offscreen_sun), sky * kLightThroughBeyond};
 }
 
 }  // namespace ssdo

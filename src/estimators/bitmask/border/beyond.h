@@ -39,7 +39,7 @@
 #include <glm/vec3.hpp>
 
 #include "estimators/bitmask/border/border_extents.h"
-#include "estimators/bitmask/border/pass_beyond.h"
+#include "estimators/bitmask/border/offscreen_visibility.h"
 #include "estimators/bitmask/march_scene.h"
 #include "estimators/bitmask/slice_pattern.h"
 #include "estimators/estimator.h"
@@ -55,14 +55,14 @@ inline constexpr float kLightThroughBeyond = 0.5f;
 /// and seed.
 SlicePattern mean_ao_pattern(const Interleaving& layout, const Window& display);
 
-/// Adds the openness of some rows of a raster, from one pixel of each pattern, with ao where
+/// Adds the enclosure of some rows of a raster, from one pixel of each pattern, with ao where
 /// surfaces go on beyond the frame. `up` unit, in camera space; `radius` in scene units, or
 /// infinity.
-void add_openness(const MarchScene& scene, const Window& display, const glm::vec3& up, float radius,
-                  const Window& rows, Openness& sum);
+void add_enclosure(const MarchScene& scene, const Window& display, const glm::vec3& up,
+                   float radius, const Window& rows, Enclosure& sum);
 
-/// Adds the openness of the receivers of a band.
-void add_openness(const Scene& band, const Request& request, Openness& sum);
+/// Adds the enclosure of the receivers of a band.
+void add_enclosure(const Scene& band, const Request& request, Enclosure& sum);
 
 /// The way up in camera space, unit.
 glm::vec3 up_in_camera(const Scene& scene);
@@ -74,32 +74,33 @@ bool is_behind(const Source& source, const glm::vec3& position, const glm::vec3&
 /// The planes that rays to any of the sources of a light meet, which has to outlive this.
 MayMeetPlane met_by_rays_to_sources(const Light& light);
 
-/// Whether the openness of the frame changes the light that is asked for.
-bool needs_openness(const Scene& scene, const Request& request);
+/// Whether the enclosure of the frame changes the light that is asked for.
+bool needs_enclosure(const Scene& scene, const Request& request);
 
-/// Whether bands have to be read once more for the openness of the frame, which the overview does
+/// Whether bands have to be read once more for the enclosure of the frame, which the overview does
 /// not give to the bit.
-bool band_needs_openness(const Scene& overview, const Request& request);
+bool band_needs_enclosure(const Scene& overview, const Request& request);
 
-/// The openness of all of a frame.
-Openness openness_of(const MarchScene& scene, const Scene& frame, float radius);
+/// The enclosure of all of a frame.
+Enclosure enclosure_of(const MarchScene& scene, const Scene& frame, float radius);
 
 /// Share of a sun's light, 0..1, that reaches a receiver past the frame's border where no surface
 /// that goes on hides it.
-float sun_past_beyond(const Openness& frame);
+float offscreen_sun_visibility(const Enclosure& frame);
 
-/// The same where openness changes the light that is asked of a scene; else 1.
-float sun_past_beyond_of(const Openness& frame, const Scene& scene, const Request& request);
+/// The same where enclosure changes the light that is asked of a scene; else 1.
+float offscreen_sun_visibility_of(const Enclosure& frame, const Scene& scene,
+                                  const Request& request);
 
 /// The same of a frame or, for a band, of the frame around it.
-float sun_past_beyond(const MarchScene& scene, const Scene& frame, const Request& request);
+float offscreen_sun_visibility(const MarchScene& scene, const Scene& frame, const Request& request);
 
 /// The shares for one source. A source of which harmonics would keep 0.25 or more (a disc of 11
 /// degrees) is treated as sky, and a smaller one the less so. Relative error of direct light of a
-/// room under two soft boxes: 0.141 if a source is sky by Source::held alone, 0.093 so.
+/// room under two soft boxes: 0.141 if a source is sky by Source::sh_fraction alone, 0.093 so.
 ///
 /// A place that is closed against the sky is not closed against a lamp, which stands in it: only
 /// surfaces that go on hide a source that is not endlessly far.
-PassBeyond pass_beyond(float sun_past, const Source& source);
+OffscreenVisibility offscreen_visibility(float offscreen_sun, const Source& source);
 
 }  // namespace ssdo

@@ -7,8 +7,8 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "math/bf16x2.h"
 #include "math/luminance.h"
-#include "math/two_in_one.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
@@ -19,9 +19,9 @@ namespace {
 std::array<BorderValues, 3> sent_at_border(const MarchScene& scene,
                                            const InterleavedVectors& radiance, bool two_sided) {
   std::array<BorderValues, 3> sent;
-  // A mask, because g++ 12 with -O2 turns a choice between first_of_two() and the number into the
-  // number.
-  const std::uint32_t kept = two_sided ? kFirstOfTwo : ~std::uint32_t(0);
+  // A mask, because g++ 12 with -O2 turns a choice between unpack_bf16_first() and the number into
+  // the number.
+  const std::uint32_t kept = two_sided ? kUpperHalf : ~std::uint32_t(0);
   for (std::size_t c = 0; c < 3; ++c) {
     sent[c] = scene.border.gather([&](int x, int y) {
       const std::ptrdiff_t i = scene.layout.index(x, y);
@@ -53,7 +53,7 @@ glm::vec3 mean_sent(const MarchScene& scene, const Geometry& geometry, const Sen
   const Window shown =
       intersection(scene.raster(), {-scene.first_x, -scene.first_y, display.width() - scene.first_x,
                                     display.height() - scene.first_y});
-  const std::uint32_t kept = sent.two_sided ? kFirstOfTwo : ~std::uint32_t(0);
+  const std::uint32_t kept = sent.two_sided ? kUpperHalf : ~std::uint32_t(0);
   const auto front_of = [&](const InterleavedVectors& light, std::ptrdiff_t i) {
     glm::vec3 front;
     for (int c = 0; c < 3; ++c)

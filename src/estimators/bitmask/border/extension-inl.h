@@ -141,9 +141,9 @@ HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const Si
     const V3 ray{hn::MulAdd(border.dx, set(1 / scene.fx), p.slope_x),
                  hn::NegMulAdd(border.dy, set(1 / scene.fy), p.slope_y), set(1)};
     const V share = thickness / depth * reciprocal_sqrt(dot(ray, ray));
-    e.depth = hn::Min(share, set(kEndlessShare));
+    e.depth = hn::Min(share, set(kInfiniteThicknessRatio));
   }
-  if (march.radius < kEndless) {
+  if (march.radius < kInfiniteLength) {
     const V foot = dot(e.start, line);
     length = hn::Min(length, hn::Sqrt(hn::MulAdd(foot, foot, radius2 - e.distance2)) - foot);
   }

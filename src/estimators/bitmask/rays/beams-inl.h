@@ -6,10 +6,10 @@
 // Compiled once for every instruction set.
 //
 // After t pixels, a ray that began at x_i with the nearness r_i is at x_i + t s_i and has the
-// nearness r_i + t q_i, and a front is in its way only if it is as near (walk-inl.h). For the rays
-// of a square, all of these lie between bounds that are linear in t. Nearness is relative to the
-// mean tangent plane of the square, so that a plane is no nearer than the rays that leave it,
-// however flat they are.
+// nearness r_i + t q_i, and a front is in its way only if it is as near (ray_traversal-inl.h). For
+// the rays of a square, all of these lie between bounds that are linear in t. Nearness is relative
+// to the mean tangent plane of the square, so that a plane is no nearer than the rays that leave
+// it, however flat they are.
 #if defined(SSDO_BITMASK_BEAMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_BEAMS_INL_H_
 #undef SSDO_BITMASK_BEAMS_INL_H_
@@ -54,19 +54,19 @@ class Beams {
     Between slopes_x, slopes_y;
     for_each(first, [&](int i) HWY_ATTR {
       const M goes = goes_on(rays, i);
-      const V inverse = set(-1) / rays(RayNumber::a, i),
-              slope_x = rays(RayNumber::rise_x, i) * inverse,
-              slope_y = rays(RayNumber::rise_y, i) * inverse;
+      const V inverse = set(-1) / rays(RayField::a, i),
+              slope_x = rays(RayField::rise_x, i) * inverse,
+              slope_y = rays(RayField::rise_y, i) * inverse;
       count = count + hn::IfThenElseZero(goes, set(1));
       sum_x = sum_x + hn::IfThenElseZero(goes, slope_x);
       sum_y = sum_y + hn::IfThenElseZero(goes, slope_y);
       slopes_x.add(goes, slope_x), slopes_y.add(goes, slope_y);
-      x_.add(goes, rays(RayNumber::x, i) + rays(RayNumber::aside_x, i));
-      y_.add(goes, rays(RayNumber::y, i) + rays(RayNumber::aside_y, i));
-      step_x_.add(goes, rays(RayNumber::step_x, i));
-      step_y_.add(goes, rays(RayNumber::step_y, i));
-      from_ = hn::Min(from_, hn::IfThenElse(goes, rays(RayNumber::from, i), from_));
-      end_ = hn::Max(end_, hn::IfThenElseZero(goes, rays(RayNumber::end, i)));
+      x_.add(goes, rays(RayField::x, i) + rays(RayField::aside_x, i));
+      y_.add(goes, rays(RayField::y, i) + rays(RayField::aside_y, i));
+      step_x_.add(goes, rays(RayField::step_x, i));
+      step_y_.add(goes, rays(RayField::step_y, i));
+      from_ = hn::Min(from_, hn::IfThenElse(goes, rays(RayField::from, i), from_));
+      end_ = hn::Max(end_, hn::IfThenElseZero(goes, rays(RayField::end, i)));
     });
     // Lanes without rays: nothing infinite.
     const M looks = count > set(0);
@@ -78,13 +78,13 @@ class Beams {
     V largest = set(0);
     for_each(first, [&](int i) HWY_ATTR {
       const M goes = goes_on(rays, i);
-      const V nearness = hn::Neg(rays(RayNumber::b, i)) / rays(RayNumber::a, i),
-              x = rays(RayNumber::x, i) + rays(RayNumber::aside_x, i) - x_.least,
-              y = rays(RayNumber::y, i) + rays(RayNumber::aside_y, i) - y_.least;
+      const V nearness = hn::Neg(rays(RayField::b, i)) / rays(RayField::a, i),
+              x = rays(RayField::x, i) + rays(RayField::aside_x, i) - x_.least,
+              y = rays(RayField::y, i) + rays(RayField::aside_y, i) - y_.least;
       above_.add(goes, nearness - hn::MulAdd(x, slope_x_, y * slope_y_));
       rising_.add(goes,
-                  rays(RayNumber::nearing, i) - hn::MulAdd(rays(RayNumber::step_x, i), slope_x_,
-                                                           rays(RayNumber::step_y, i) * slope_y_));
+                  rays(RayField::nearing, i) - hn::MulAdd(rays(RayField::step_x, i), slope_x_,
+                                                          rays(RayField::step_y, i) * slope_y_));
       largest = hn::Max(largest, hn::IfThenElseZero(goes, hn::Abs(nearness)));
     });
     above_.keep_where(looks), rising_.keep_where(looks);
@@ -137,7 +137,7 @@ class Beams {
   static constexpr float kRounding = 2e-6f;
 
   static HWY_INLINE M goes_on(const RaysOfBlock& rays, int i) {
-    return rays(RayNumber::end, i) > rays(RayNumber::from, i);
+    return rays(RayField::end, i) > rays(RayField::from, i);
   }
 
   /// The interval of a coordinate between two t.
@@ -229,8 +229,8 @@ HWY_INLINE void shorten_ways(const MarchScene& scene, const std::vector<DepthBou
   for (int first = 0; first < Interleaving::kPeriod; first += Block::kRows) {
     const Between found = Beams(rays, first).find_in_the_way(scene, bounds);
     Beams::for_each(first, [&](int i) HWY_ATTR {
-      rays.set_at(RayNumber::from, i, hn::Max(found.least, rays(RayNumber::from, i)));
-      rays.set_at(RayNumber::end, i, hn::Min(found.most, rays(RayNumber::end, i)));
+      rays.set_at(RayField::from, i, hn::Max(found.least, rays(RayField::from, i)));
+      rays.set_at(RayField::end, i, hn::Min(found.most, rays(RayField::end, i)));
     });
   }
 }

@@ -37,14 +37,14 @@ struct Block {
 };
 
 /// Numbers of the pixels of a block, by Block::first_of().
-struct OfBlock {
+struct BlockValues {
   alignas(64) float values[Block::kPixels];
 
   HWY_INLINE V operator()(int i) const { return load(values + i); }
   HWY_INLINE void set_at(int i, V value) { store(value, values + i); }
 };
-struct OfBlock3 {
-  OfBlock x, y, z;
+struct BlockVectors {
+  BlockValues x, y, z;
 
   HWY_INLINE V3 operator()(int i) const { return {x(i), y(i), z(i)}; }
   HWY_INLINE void set_at(int i, const V3& v) {

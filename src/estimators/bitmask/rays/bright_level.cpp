@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "estimators/bitmask/march.h"
+#include "math/bf16x2.h"
 #include "math/luminance.h"
-#include "math/two_in_one.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {
@@ -63,8 +63,8 @@ Sums sum_of(const SentLight& sent, const Add& add) {
         const auto side = [&](float (*of)(float)) {
           return luminance({of(both.x), of(both.y), of(both.z)});
         };
-        const float front = sent.two_sided ? side(first_of_two) : luminance(both);
-        add(rows[std::size_t(row)], front, sent.two_sided ? side(second_of_two) : front);
+        const float front = sent.two_sided ? side(unpack_bf16_first) : luminance(both);
+        add(rows[std::size_t(row)], front, sent.two_sided ? side(unpack_bf16_second) : front);
       }
     }
   });
@@ -96,7 +96,7 @@ float level_of(const SentLight& sent, float bright) {
 }  // namespace
 
 BrightLevel bright_level(const SentLight& sent) {
-  if (sent.far_light) return {sent.far_light->bright, sent.far_light->level};
+  if (sent.overview_light) return {sent.overview_light->bright, sent.overview_light->level};
   const Brightness b = brightness_of(sent);
   const float bright = kBright * b.mean();
   if (b.most <= bright) return {bright, std::numeric_limits<float>::infinity()};

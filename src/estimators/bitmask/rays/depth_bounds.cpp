@@ -10,7 +10,7 @@
 #include <limits>
 #include <span>
 
-#include "math/endless.h"
+#include "math/infinity.h"
 #include "parallel/tiles.h"
 
 namespace ssdo {

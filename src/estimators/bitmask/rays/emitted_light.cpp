@@ -86,8 +86,8 @@ HWY_INLINE Chosen choose(const EmittedJob& job, const MarchReceiver& p, const Ch
 /// The rays of a block, the light that comes along them if nothing is in their way, and what of
 /// that arrives.
 struct EmittedRays {
-  OfBlock3 to, light, arrived;
-  OfBlock length;
+  BlockVectors to, light, arrived;
+  BlockValues length;
 };
 
 /// The light that arrives at a block, by rays of one of two sets that have nothing in common.
@@ -119,7 +119,8 @@ HWY_INLINE void find_arriving(const EmittedJob& job, const Block& block, int set
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
       const int i = block.first_of(place);
       const MarchReceiver p = load_receiver(scene, place);
-      const Arrival a = occluders.arrival(i, p, ray(p, i), PassLanes{set(1), 0});
+      const RayVisibility a =
+          occluders.visibility(i, p, ray(p, i), OffscreenVisibilityLanes{set(1), 0});
       const V3 light = if_then_else_zero(a.share > zero, rays.light(i) * a.share);
       rays.arrived.set_at(i, mul_add(light, set(1 / float(job.rays)), rays.arrived(i)));
     });

@@ -10,9 +10,9 @@
 
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/rays/bright_level.h"
+#include "math/bf16x2.h"
 #include "math/luminance.h"
 #include "math/sobol.h"
-#include "math/two_in_one.h"
 #include "parallel/tiles.h"
 #include "scene/solids/unseen_side.h"
 
@@ -56,8 +56,8 @@ class Senders {
     const std::ptrdiff_t at = scene_.layout.index(x, y);
     if (!scene_.shows_surface(at)) return;
     const glm::vec3 both(radiance_[0][i], radiance_[1][i], radiance_[2][i]);
-    const glm::vec3 front = two_sided_ ? each(first_of_two, both) : both,
-                    back = two_sided_ ? each(second_of_two, both) : both;
+    const glm::vec3 front = two_sided_ ? each(unpack_bf16_first, both) : both,
+                    back = two_sided_ ? each(unpack_bf16_second, both) : both;
     const auto visit_side = [&](const glm::vec3& radiance, bool is_back) {
       Side s = side(radiance, x, y, at, is_back);
       s.point.pixel = int(i), s.point.is_back = is_back;
@@ -65,7 +65,8 @@ class Senders {
     };
     if (luminance(front) > level_) visit_side(front, false);
     const float thickness = scene_.layers.front().thickness[at];
-    const bool ends = thickness < (scene_.orthographic ? kEndlessLength : kEndlessShare);
+    const bool ends =
+        thickness < (scene_.orthographic ? kInfiniteThickness : kInfiniteThicknessRatio);
     if (ends && luminance(back) > level_) visit_side(back, true);
   }
 
@@ -187,7 +188,7 @@ struct Part {
   Senders senders;
   Tiles tiles;
   const Interleaving& layout;
-  const FarRaster* far;  ///< the order of the radiance, if that is not `layout`
+  const OverviewRaster* far;  ///< the order of the radiance, if that is not `layout`
 
   template <class Visit>
   void for_each_side(std::size_t tile, const Visit& visit) const {
@@ -205,7 +206,7 @@ struct Part {
 std::vector<Part> parts_of(const SentLight& sent, float level) {
   std::vector<Part> parts;
   const auto add = [&](const MarchScene& scene, const InterleavedVectors& radiance,
-                       const Window& rows, const FarRaster* far) {
+                       const Window& rows, const OverviewRaster* far) {
     // Rays that come from afar see pixels of the overview.
     const float beside_px = sent.far && !far ? kBesidePx * Interleaving::kPeriod : kBesidePx;
     if (rows.height() > 0) {
@@ -215,15 +216,15 @@ std::vector<Part> parts_of(const SentLight& sent, float level) {
   };
   add(sent.scene, sent.radiance, sent.lit, nullptr);
   if (!sent.far) return parts;
-  const FarRaster& far = sent.far->raster;
+  const OverviewRaster& far = sent.far->raster;
   const auto far_row = [&](int y) {
     const int of_frame =
         (y + sent.scene.first_y + Interleaving::kPeriod / 2) >> Interleaving::kShift;
     return std::clamp(of_frame - far.first_y, 0, far.height);
   };
   const MarchScene& overview = sent.far->scene;
-  add(overview, sent.far_light->sent, {0, 0, far.width, far_row(sent.lit.y0)}, &far);
-  add(overview, sent.far_light->sent, {0, far_row(sent.lit.y1), far.width, far.height}, &far);
+  add(overview, sent.overview_light->sent, {0, 0, far.width, far_row(sent.lit.y0)}, &far);
+  add(overview, sent.overview_light->sent, {0, far_row(sent.lit.y1), far.width, far.height}, &far);
   return parts;
 }
 
@@ -322,12 +323,12 @@ Emitters find_emitters(const SentLight& sent, unsigned seed) {
 }
 
 Emitters emitters_of_light(Emitters of_all, const InterleavedVectors& radiance, bool two_sided,
-                           const FarLight* far) {
+                           const OverviewLight* far) {
   bool sends = false;
   for (Emitter& e : of_all.points) {
     const InterleavedVectors& from = e.is_far ? far->sent : radiance;
     const glm::vec3 both(from[0][e.pixel], from[1][e.pixel], from[2][e.pixel]);
-    const auto side = e.is_back ? second_of_two : first_of_two;
+    const auto side = e.is_back ? unpack_bf16_second : unpack_bf16_first;
     e.power = e.per_radiance * (two_sided ? each(side, both) : both);
     sends = sends || e.power != glm::vec3(0);
   }

@@ -62,6 +62,6 @@ Emitters find_emitters(const SentLight& sent, unsigned seed);
 /// The same points with what they send of one light. `far`: what the overview sends of it. No
 /// points: they send nothing of it.
 Emitters emitters_of_light(Emitters of_all, const InterleavedVectors& radiance, bool two_sided,
-                           const FarLight* far);
+                           const OverviewLight* far);
 
 }  // namespace ssdo

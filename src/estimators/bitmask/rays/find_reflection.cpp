@@ -39,14 +39,14 @@ void find_reflection(const ReflectionInput& input, Products& products, const Pro
   InterleavedVectors sky, surfaces;
   std::array<BorderValues, 3> beyond;
   if (request.products.specular) {
-    products.shares.mirror = std::make_shared<const MirrorModel>(scene, request);
+    products.visibility.mirror = std::make_shared<const MirrorModel>(scene, request);
     sky = raster.make_color(), surfaces = raster.make_color();
     const bool sends = sent[0].data() != nullptr;
     if (sends) {
       const float level = bright_level({march.scene, sent, input.two_sided, input.lit}).bright;
       beyond = light_beyond(march.scene, sent, sent, input.two_sided, level);
     }
-    light.emplace(MirroredLightJob{*products.shares.mirror, scene.specular_color,
+    light.emplace(MirroredLightJob{*products.visibility.mirror, scene.specular_color,
                                    sends ? &sent : nullptr, input.two_sided,
                                    sends ? beyond.data() : nullptr, &sky, &surfaces});
   }
@@ -62,7 +62,7 @@ void find_reflection(const ReflectionInput& input, Products& products, const Pro
       march.scene.receivers, [&](const Window& part) { march_reflection(job, part); }, progress);
   if (open.data()) products.reflection = raster.picture(std::move(open), 1.0f);
   if (!light) return;
-  products.shares.mirrored_sky = raster.picture(std::move(sky));
+  products.visibility.mirrored_sky = raster.picture(std::move(sky));
   products.specular = raster.picture(std::move(surfaces));
 }
 

@@ -7,9 +7,9 @@
 
 namespace ssdo {
 
-SourceShares find_source(SourceJob job, const Window& to, const Progress& progress) {
+SourceVisibility find_source(SourceJob job, const Window& to, const Progress& progress) {
   const Interleaving& layout = job.march.scene.layout;
-  SourceShares found(layout);
+  SourceVisibility found(layout);
   job.found = &found;
   for_each_tall_part_of(
       layout, to, [&](const Window& part) { march_source(job, part); }, progress);
@@ -17,20 +17,20 @@ SourceShares find_source(SourceJob job, const Window& to, const Progress& progre
 }
 
 void find_unseen_light(SourceJob job, const MarchScene& solids, const Window& to,
-                       SourceShares& found) {
+                       SourceVisibility& found) {
   const Interleaving& layout = job.march.scene.layout;
-  found.unseen = InterleavedShares(layout);
+  found.unseen = InterleavedRatios(layout);
   job.unseen_of = &solids, job.found = &found;
   job.march.cut = nullptr;
   for_each_tall_part_of(layout, to, [&](const Window& part) { march_source(job, part); }, {});
 }
 
-void hand_out_sources(std::vector<SourceShares>& found, const Raster& raster,
-                      std::vector<Plane<float>>& shares, std::vector<ShadowDraw>& draws) {
-  for (SourceShares& source : found) {
+void hand_out_sources(std::vector<SourceVisibility>& found, const Raster& raster,
+                      std::vector<Plane<float>>& shares, std::vector<ShadowSample>& samples) {
+  for (SourceVisibility& source : found) {
     shares.push_back(raster.picture(std::move(source.share), 1));
-    draws.push_back({raster.picture(std::move(source.weight), 1),
-                     raster.picture(std::move(source.width), kPenumbraUnit)});
+    samples.push_back({raster.picture(std::move(source.weight), 1),
+                       raster.picture(std::move(source.width), kPenumbraUnit)});
   }
 }
 

@@ -11,7 +11,7 @@
 
 #include "estimators/bitmask/border/extension-inl.h"
 #include "estimators/bitmask/other_views-inl.h"
-#include "estimators/bitmask/rays/walk-inl.h"
+#include "estimators/bitmask/rays/ray_traversal-inl.h"
 
 #include <optional>
 
@@ -58,13 +58,13 @@ struct Ray {
 };
 
 /// The same in the raster of an overview.
-HWY_INLINE Ray in_far_pixels(Ray ray) {
-  ray.in_slice = in_far_pixels(ray.in_slice);
+HWY_INLINE Ray in_overview_pixels(Ray ray) {
+  ray.in_slice = in_overview_pixels(ray.in_slice);
   return ray;
 }
 
 /// The likelihood, 0..1, that rays which leave the frame at `leaves` meet, beyond the border, the
-/// surface of the border pixel `border`; `ground` is that of PassLanes.
+/// surface of the border pixel `border`; `ground` is that of OffscreenVisibilityLanes.
 template <bool kOrthographic>
 HWY_INLINE V meets_beyond(const March& march, const MarchReceiver& p, const Ray& ray, V leaves,
                           const Border& border, bool ground) {
@@ -123,10 +123,10 @@ HWY_INLINE Border beside_corner(const MarchScene& scene, const MarchReceiver& p,
   return border;
 }
 
-/// PassBeyond by lane.
-struct PassLanes {
-  V past;
-  float through;
+/// OffscreenVisibility by lane.
+struct OffscreenVisibilityLanes {
+  V unblocked;
+  float blocked;
   /// Whether surfaces that face up go on without end, whatever their extent in the frame
   /// (border/border_extents.h), and other surfaces with a likelihood that falls with their
   /// steepness: what is mirrored from below the horizon is ground.
@@ -139,7 +139,7 @@ struct PassLanes {
 /// member to member of the pattern. Calls `on_met(border, likely)` for each surface that goes on.
 template <bool kOrthographic, class Met>
 HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const Ray& ray, float turn,
-                         const PassLanes& pass, const Met& on_met) {
+                         const OffscreenVisibilityLanes& pass, const Met& on_met) {
   const MarchScene& scene = march.scene;
   const float apart_px = 2 * kWitnessReach *
                          std::hypot(float(scene.frame_width), float(scene.frame_height)) /
@@ -167,8 +167,8 @@ HWY_INLINE V open_beyond(const March& march, const MarchReceiver& p, const Ray& 
   }
   const V hidden = hn::Max(near_exit, near_corner * set(kCornerTrust)) * set(1.0f / kWitnesses);
   // The more of the radius the frame shows, the less is left to meet beyond it.
-  const V past = hn::MulAdd(exit_at / set(march.radius), set(1) - pass.past, pass.past);
-  return hn::IfThenElse(leaves_frame, hn::MulAdd(hidden, set(pass.through) - past, past), set(1));
+  const V past = hn::MulAdd(exit_at / set(march.radius), set(1) - pass.unblocked, pass.unblocked);
+  return hn::IfThenElse(leaves_frame, hn::MulAdd(hidden, set(pass.blocked) - past, past), set(1));
 }
 
 /// The distance in the picture to a point on each lane's ray. A ray to a point beside or behind a
@@ -196,7 +196,7 @@ HWY_INLINE Ray make_ray(const MarchScene& scene, const MarchReceiver& p, const V
   ray.in_slice = ray_in_slice(scene, p, to, ray.side);
   const SlicePoint along = ray.in_slice.along;
   ray.open = hn::And(open, dot(V2{ray.side.n_t, p.facing}, V2{along.s, along.v}) > set(0));
-  const M ends = hn::And(ray.open, length < set(kEndless));
+  const M ends = hn::And(ray.open, length < set(kInfiniteLength));
   if (!any(ends)) return ray;
   V& end_px = ray.in_slice.end_px;
   const V last_px =
@@ -208,7 +208,7 @@ HWY_INLINE Ray make_ray(const MarchScene& scene, const MarchReceiver& p, const V
 }
 
 /// What the test of rays finds.
-struct Arrival {
+struct RayVisibility {
   V share;        ///< of the ray, 0..1, that nothing blocks
   V lost_beyond;  ///< share that only surfaces assumed beyond the border block
   V blocked_at;   ///< way along it to its occluder in the frame, or kFarAway
@@ -218,7 +218,7 @@ struct Arrival {
 /// part of the frame, surfaces of other views, and surfaces that go on beyond the border. The rays
 /// of a block are tested together, and run() follows them over the frame:
 ///
-///   clear(); ask(i, ...) for some vectors; run(); arrival(i, ...) for each of them
+///   clear(); ask(i, ...) for some vectors; run(); visibility(i, ...) for each of them
 template <bool kOrthographic>
 class Occluders {
  public:
@@ -238,12 +238,12 @@ class Occluders {
   HWY_INLINE void ask(int i, const MarchReceiver& p, const Ray& ray) {
     near_.put(i, p, ray.side, ray.in_slice, ray.open);
     if (far_) {
-      far_->put(i, in_far_pixels(march_, p), in_far_pixels(ray.side), in_far_pixels(ray.in_slice),
-                ray.open);
+      far_->put(i, in_overview_pixels(march_, p), in_overview_pixels(ray.side),
+                in_overview_pixels(ray.in_slice), ray.open);
     }
   }
 
-  /// As Walk::run().
+  /// As RayTraversal::run().
   HWY_INLINE void run(bool together) {
     near_.run(together);
     if (far_) far_->run(false);
@@ -251,11 +251,12 @@ class Occluders {
 
   /// How much of the rays given to ask() arrives; `pass` and `on_met` are those of open_beyond().
   template <class Met>
-  HWY_INLINE Arrival arrival(int i, const MarchReceiver& p, const Ray& ray, const PassLanes& pass,
-                             const Met& on_met) const {
+  HWY_INLINE RayVisibility visibility(int i, const MarchReceiver& p, const Ray& ray,
+                                      const OffscreenVisibilityLanes& pass,
+                                      const Met& on_met) const {
     const V at_px = blocked_px(i);
     const M meets = at_px >= set(0);
-    Arrival a;
+    RayVisibility a;
     a.blocked_at = hn::IfThenElse(hn::And(ray.open, meets),
                                   way_along<kOrthographic>(ray.in_slice, p, at_px), set(kFarAway));
     M open = hn::AndNot(meets, ray.open);
@@ -264,8 +265,8 @@ class Occluders {
     if (march_.cut && any(open)) {
       const int rank = SlicePattern::rank(member_at(march_.scene, p.place));
       const float turn = (float(rank) + 0.5f) / Interleaving::kMembers;
-      share = far_ ? open_beyond<kOrthographic>(*far_march_, in_far_pixels(march_, p),
-                                                in_far_pixels(ray), turn, pass, on_met)
+      share = far_ ? open_beyond<kOrthographic>(*far_march_, in_overview_pixels(march_, p),
+                                                in_overview_pixels(ray), turn, pass, on_met)
                    : open_beyond<kOrthographic>(march_, p, ray, turn, pass, on_met);
     }
     a.share = hn::IfThenElseZero(open, share);
@@ -273,13 +274,13 @@ class Occluders {
     return a;
   }
 
-  HWY_INLINE Arrival arrival(int i, const MarchReceiver& p, const Ray& ray,
-                             const PassLanes& pass) const {
-    return arrival(i, p, ray, pass, [](const Border&, V) HWY_ATTR {});
+  HWY_INLINE RayVisibility visibility(int i, const MarchReceiver& p, const Ray& ray,
+                                      const OffscreenVisibilityLanes& pass) const {
+    return visibility(i, p, ray, pass, [](const Border&, V) HWY_ATTR {});
   }
 
  private:
-  /// As Walk::blocked_px(), in pixels of the raster.
+  /// As RayTraversal::blocked_px(), in pixels of the raster.
   HWY_INLINE V blocked_px(int i) const {
     const V near = near_.blocked_px(i);
     if (!far_) return near;
@@ -299,9 +300,9 @@ class Occluders {
   }
 
   const March& march_;
-  Walk<kOrthographic> near_;
+  RayTraversal<kOrthographic> near_;
   std::optional<March> far_march_;
-  std::optional<Walk<kOrthographic>> far_;
+  std::optional<RayTraversal<kOrthographic>> far_;
 };
 
 }  // namespace ssdo::HWY_NAMESPACE

@@ -65,7 +65,7 @@ HWY_INLINE V way_along(const RayInSlice& ray, const MarchReceiver& p, V pixels) 
 }
 
 /// The same in the raster of an overview.
-HWY_INLINE RayInSlice in_far_pixels(RayInSlice ray) {
+HWY_INLINE RayInSlice in_overview_pixels(RayInSlice ray) {
   const V pixels = set(float(Interleaving::kPeriod));
   ray.end_px = ray.end_px / pixels;
   ray.nearing = ray.nearing * pixels, ray.per_px = ray.per_px * pixels;

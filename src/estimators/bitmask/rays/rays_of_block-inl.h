@@ -17,9 +17,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// What is known of each ray; see walk-inl.h. A ray is followed only if its `end` exceeds its
-/// `from`.
-enum class RayNumber {
+/// What is known of each ray; see ray_traversal-inl.h. A ray is followed only if its `end` exceeds
+/// its `from`.
+enum class RayField {
   x,
   y,  ///< the receiver's pixel
   aside_x,
@@ -41,32 +41,32 @@ enum class RayNumber {
   count
 };
 
-/// The numbers of all rays of a block, one RayNumber after another, by Block::first_of().
+/// The numbers of all rays of a block, one RayField after another, by Block::first_of().
 class RaysOfBlock {
  public:
   RaysOfBlock()
-      : numbers_(hwy::AllocateAligned<float>(std::size_t(RayNumber::count) * Block::kPixels)) {
-    std::fill_n(numbers_.get(), std::size_t(RayNumber::count) * Block::kPixels, 0.0f);
+      : numbers_(hwy::AllocateAligned<float>(std::size_t(RayField::count) * Block::kPixels)) {
+    std::fill_n(numbers_.get(), std::size_t(RayField::count) * Block::kPixels, 0.0f);
   }
 
   /// The numbers of a vector of pixels.
-  HWY_INLINE V operator()(RayNumber which, int i) const { return load(first(which) + i); }
-  HWY_INLINE void set_at(RayNumber which, int i, V value) { store(value, first(which) + i); }
+  HWY_INLINE V operator()(RayField which, int i) const { return load(first(which) + i); }
+  HWY_INLINE void set_at(RayField which, int i, V value) { store(value, first(which) + i); }
 
   /// The numbers of single pixels.
-  HWY_INLINE V of(RayNumber which, VI at) const { return gather(first(which), at); }
-  float& of(RayNumber which, int at) { return first(which)[at]; }
-  float of(RayNumber which, int at) const { return first(which)[at]; }
+  HWY_INLINE V of(RayField which, VI at) const { return gather(first(which), at); }
+  float& of(RayField which, int at) { return first(which)[at]; }
+  float of(RayField which, int at) const { return first(which)[at]; }
 
   /// All rays look for nothing, and have met nothing.
   HWY_INLINE void clear() {
-    std::fill_n(first(RayNumber::from), Block::kPixels, 0.0f);
-    std::fill_n(first(RayNumber::end), Block::kPixels, 0.0f);
-    std::fill_n(first(RayNumber::blocked_px), Block::kPixels, -1.0f);
+    std::fill_n(first(RayField::from), Block::kPixels, 0.0f);
+    std::fill_n(first(RayField::end), Block::kPixels, 0.0f);
+    std::fill_n(first(RayField::blocked_px), Block::kPixels, -1.0f);
   }
 
  private:
-  float* first(RayNumber which) const {
+  float* first(RayField which) const {
     return numbers_.get() + std::size_t(which) * std::size_t(Block::kPixels);
   }
 

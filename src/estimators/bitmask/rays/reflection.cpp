@@ -87,7 +87,8 @@ HWY_INLINE V3 sent_from(const MirroredLightJob& job, const MarchScene& scene,
           gather((*job.sent)[2].data(), index)};
   if (job.two_sided) {
     const V tilt = gather(scene.tilt.data(), index);
-    const V3 normal = normal_of_tilt(scene, {first_of_two(tilt), second_of_two(tilt)}, slope);
+    const V3 normal =
+        normal_of_tilt(scene, {unpack_bf16_first(tilt), unpack_bf16_second(tilt)}, slope);
     sent = if_then_else(dot(normal, to) < set(0), front_of(sent), back_of(sent));
   }
   return if_then_else_zero(shown, sent);
@@ -118,7 +119,7 @@ struct MirroredSums {
 
   template <bool kOrthographic>
   HWY_INLINE void add(const ReflectionJob& job, const MarchReceiver& p, const V3& f0,
-                      const Mirrored& m, const Arrival& a, const SentBeyond& beyond) {
+                      const Mirrored& m, const RayVisibility& a, const SentBeyond& beyond) {
     const MirroredLightJob& light = *job.light;
     const V3 weight = if_then_else_zero(m.share > set(0), fresnel(f0, m.facing) * m.share),
              seen = weight * look_up(light.model.sky, m.to, set(1 / float(job.rays)) / m.density);
@@ -147,14 +148,15 @@ struct MirroredSums {
 
 /// Rays of a block to what is mirrored, and what they have found.
 struct BlockOfMirrors {
-  OfBlock3 to;
-  OfBlock share, facing, density;  ///< as Mirrored has them
-  OfBlock open, all;
-  OfBlock3 open_sky, all_sky, met, weights;
+  BlockVectors to;
+  BlockValues share, facing, density;  ///< as Mirrored has them
+  BlockValues open, all;
+  BlockVectors open_sky, all_sky, met, weights;
 
   HWY_INLINE void clear(int i) {
-    for (OfBlock* sum : {&open, &all}) sum->set_at(i, set(0));
-    for (OfBlock3* sum : {&open_sky, &all_sky, &met, &weights}) sum->set_at(i, set(glm::vec3(0)));
+    for (BlockValues* sum : {&open, &all}) sum->set_at(i, set(0));
+    for (BlockVectors* sum : {&open_sky, &all_sky, &met, &weights})
+      sum->set_at(i, set(glm::vec3(0)));
   }
   HWY_INLINE void put(int i, const Mirrored& m) {
     to.set_at(i, m.to), share.set_at(i, m.share);
@@ -183,7 +185,7 @@ void reflection(const ReflectionJob& job, const Window& part) {
   const MarchScene& scene = job.march.scene;
   Occluders<kOrthographic> occluders(job.march, job.bounds);
   const auto mirrors = std::make_unique<BlockOfMirrors>();
-  const PassLanes pass{set(1), 0, true};
+  const OffscreenVisibilityLanes pass{set(1), 0, true};
   const auto receiver = [&](const Place& place) HWY_ATTR {
     MarchReceiver p = load_receiver(scene, place);
     p.reach_px = reach_px(scene, p, job.march.radius);
@@ -212,9 +214,9 @@ void reflection(const ReflectionJob& job, const Window& part) {
         const int i = block.first_of(place);
         const Mirrored m = mirrors->mirrored(i);
         SentBeyond beyond(job.light ? job.light->sent_border : nullptr);
-        const Arrival a = occluders.arrival(i, p, ray_of<kOrthographic>(scene, p, m), pass,
-                                            [&](const Border& border, V likely)
-                                                HWY_ATTR { beyond.add(border, likely); });
+        const RayVisibility a = occluders.visibility(i, p, ray_of<kOrthographic>(scene, p, m), pass,
+                                                     [&](const Border& border, V likely)
+                                                         HWY_ATTR { beyond.add(border, likely); });
         mirrors->open.set_at(i, hn::MulAdd(a.share, m.share, mirrors->open(i)));
         mirrors->all.set_at(
             i, mirrors->all(i) + hn::IfThenElseZero(p.valid, hn::Max(m.share, set(0))));

@@ -6,17 +6,17 @@
 
 namespace ssdo {
 
-struct FarScene;
-struct FarLight;
+struct OverviewScene;
+struct OverviewLight;
 
 /// The light that is sent in a pass of bounces.
 struct SentLight {
   const MarchScene& scene;
   const InterleavedVectors& radiance;
-  bool two_sided;                 ///< as SenderJob has it
-  Window lit;                     ///< the pixels whose radiance is known
-  const FarScene* far = nullptr;  ///< the frame around; null: the raster is all that sends
-  const FarLight* far_light = nullptr;
+  bool two_sided;                      ///< as SenderJob has it
+  Window lit;                          ///< the pixels whose radiance is known
+  const OverviewScene* far = nullptr;  ///< the frame around; null: the raster is all that sends
+  const OverviewLight* overview_light = nullptr;
 };
 
 }  // namespace ssdo

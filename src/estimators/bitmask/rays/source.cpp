@@ -70,10 +70,11 @@ HWY_INLINE V penumbra_px(const SourceJob& job, const MarchReceiver& p, V distanc
   return hn::Clamp(px, set(1), set(float(4 * Interleaving::kPeriod)));
 }
 
-HWY_INLINE PassLanes pass_of(const SourceJob& job, const Place& place) {
-  const V least = set(job.pass.past);
-  if (!job.past) return {least, job.pass.through};
-  return {hn::MulAdd(load(*job.past, place.index), set(1) - least, least), job.pass.through};
+HWY_INLINE OffscreenVisibilityLanes pass_of(const SourceJob& job, const Place& place) {
+  const V least = set(job.offscreen.unblocked);
+  if (!job.unblocked) return {least, job.offscreen.blocked};
+  return {hn::MulAdd(load(*job.unblocked, place.index), set(1) - least, least),
+          job.offscreen.blocked};
 }
 
 /// What the rays of the pixels of a block have found, by Block::first_of().
@@ -95,9 +96,9 @@ struct BlockSums {
 
 /// Rays of a block to the points that the members of the pattern look at.
 struct SourceRays {
-  OfBlock3 to;
-  OfBlock length;
-  OfBlock light;  ///< that of the point: its weight times the cosine to the normal; 0: no ray
+  BlockVectors to;
+  BlockValues length;
+  BlockValues light;  ///< that of the point: its weight times the cosine to the normal; 0: no ray
 };
 
 template <bool kOrthographic>
@@ -165,7 +166,7 @@ void source(const SourceJob& job, const Window& part) {
         if (!any(rays.light(i) > set(0))) return;
         const MarchReceiver p = start_of_ray(job, load_receiver(scene, place), rays.to(i));
         const Ray ray = ray_of<kOrthographic>(scene, p, rays, i);
-        const Arrival a = occluders.arrival(i, p, ray, pass_of(job, place));
+        const RayVisibility a = occluders.visibility(i, p, ray, pass_of(job, place));
         sums.add(i, rays.light(i), a.share,
                  penumbra_px<kOrthographic>(job, p, a.blocked_at, ray.length));
       });

@@ -30,7 +30,7 @@ HWY_INLINE UnseenSide unseen_side(const MarchScene& scene, const MarchReceiver& 
           length = scene.orthographic ? thickness : thickness * p.distance;
   const V through = hn::MulAdd(length, set(1 / kDepthOfWidth), set(0.5f) * pixel);
   UnseenSide side;
-  side.ends = thickness < set(scene.orthographic ? kEndlessLength : kEndlessShare);
+  side.ends = thickness < set(scene.orthographic ? kInfiniteThickness : kInfiniteThicknessRatio);
   side.position = mul_add(p.to_viewer, hn::Neg(hn::IfThenElseZero(side.ends, through)), p.position);
   side.normal = mul_add(p.to_viewer, set(-2) * dot(p.normal, p.to_viewer), p.normal);
   side.clear = set(kBesidePx) * pixel;
@@ -38,8 +38,8 @@ HWY_INLINE UnseenSide unseen_side(const MarchScene& scene, const MarchReceiver& 
 }
 
 /// `p` moved to a point in front of the camera from which a ray leaves in the direction `to`, unit.
-/// The plane that bounds what the ray meets (Walk) passes through the point; the ray and the
-/// direction to the viewer have the same angle to it.
+/// The plane that bounds what the ray meets (RayTraversal) passes through the point; the ray and
+/// the direction to the viewer have the same angle to it.
 HWY_INLINE MarchReceiver moved_to(const MarchScene& scene, MarchReceiver p, const V3& position,
                                   const V3& to) {
   const V one = set(1), zero = set(0);

@@ -100,9 +100,9 @@ bool exceeds_display(const GBuffer& g) {
 }
 
 /// The camera of P in camera space, in the pose of a reading that has one.
-FoundCamera posed(const HeaderCamera& h, const Camera& of_positions,
+FoundCamera posed(const HeaderCamera& h, const Camera& position_camera,
                   const std::vector<HeaderCamera>& header) {
-  FoundCamera out{of_positions, of_positions, h.has_pose};
+  FoundCamera out{position_camera, position_camera, h.has_pose};
   if (!h.has_pose) return out;
   out.camera.rotation = h.camera.rotation, out.camera.origin = h.camera.origin;
   out.readings = readings_from(header, h);

@@ -124,7 +124,7 @@ LampSample DiskLamp::sample(const glm::dvec3& position, const glm::dvec2& point)
   return found;
 }
 
-LampBends DiskLamp::bends(const glm::dvec3& position) const {
+LampBreakpoints DiskLamp::breakpoints(const glm::dvec3& position) const {
   const Turned turned(position);
   if (!(turned.height > 0)) return {{kPi, kPi}, 2};
   const double near = turned.off - 1;

@@ -51,7 +51,7 @@ glm::vec3 turned(const WorldToCamera& camera, const glm::dvec3& direction) {
   return glm::vec3(glm::normalize(camera.rotation * direction));
 }
 
-std::shared_ptr<NearLamp> shape_of(const Lamp& lamp) {
+std::shared_ptr<LocalLamp> shape_of(const Lamp& lamp) {
   if (lamp.type == LampType::rect) {
     auto rect = std::make_shared<RectLamp>();
     const double longer = std::max(lamp.width, lamp.height);
@@ -59,13 +59,13 @@ std::shared_ptr<NearLamp> shape_of(const Lamp& lamp) {
     rect->size = longer / 2;
     return rect;
   }
-  std::shared_ptr<NearLamp> round;
+  std::shared_ptr<LocalLamp> round;
   if (lamp.type == LampType::disk)
     round = std::make_shared<DiskLamp>();
   else
     round = std::make_shared<SphereLamp>();
   round->size = std::max(lamp.radius, kPointRadius);
-  round->turns = lamp.soft_falloff;
+  round->faces_receiver = lamp.soft_falloff;
   return round;
 }
 
@@ -92,17 +92,17 @@ std::shared_ptr<Source> make_source(const Lamp& lamp, const WorldToCamera& camer
   if (lamp.type == LampType::distant) {
     source = distant(lamp, camera);
   } else {
-    const std::shared_ptr<NearLamp> near = shape_of(lamp);
+    const std::shared_ptr<LocalLamp> near = shape_of(lamp);
     near->center = glm::vec3(camera.rotation * (lamp.position - camera.origin));
     near->axes = {turned(camera, lamp.axes[0]), turned(camera, lamp.axes[1]),
                   turned(camera, -lamp.axes[2])};
-    // No receiver gets more than kBrightest: see NearLamp::received().
+    // No receiver gets more than kBrightest: see LocalLamp::received().
     near->nearest =
         std::max(nearest, std::sqrt(most * glm::pi<double>() / near->shown_area() / kBrightest));
     if (lamp.has_cone) {
-      near->lit.outer = glm::radians(lamp.cone_angle);
-      near->lit.inner = near->lit.outer * (1 - lamp.cone_softness);
-      near->lit.by_cosine = lamp.cone_by_cosine;
+      near->spot_cone.outer = glm::radians(lamp.cone_angle);
+      near->spot_cone.inner = near->spot_cone.outer * (1 - lamp.cone_softness);
+      near->spot_cone.by_cosine = lamp.cone_by_cosine;
     }
     source = near;
   }

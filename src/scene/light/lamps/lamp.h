@@ -22,7 +22,7 @@ enum class LampType { sphere, disk, rect, distant };
 /// or pi sin^2 of half the angle. Lamps emit along -z of their axes, spheres in all directions.
 struct Lamp {
   std::string name;
-  std::string origin;  ///< for messages: "FILE: light NAME" or "--light NAME"
+  std::string given_by;  ///< for messages: "FILE: light NAME" or "--light NAME"
   LampType type = LampType::sphere;
   glm::dvec3 position{0};
   glm::dmat3 axes{1};            ///< columns: along the width, along the height, backwards

@@ -18,7 +18,7 @@
 #include "io/one_line.h"
 #include "nearest_name.h"
 #include "scene/light/lamps/blackbody.h"
-#include "scene/light/named_light.h"
+#include "scene/light/light_group.h"
 #include "scene/objects/selection.h"
 
 namespace ssdo {
@@ -64,7 +64,8 @@ std::string shown(const json& value) {
 
 class LampReader {
  public:
-  LampReader(const json& object, LampOrigin origin) : object_(object), origin_(std::move(origin)) {}
+  LampReader(const json& object, LampOption given_by)
+      : object_(object), given_by_(std::move(given_by)) {}
 
   Lamp read() {
     if (!object_.is_object()) refuse("is " + shown(object_) + "; a light is an object with keys");
@@ -86,13 +87,13 @@ class LampReader {
     read_light();
     lamp_.receive = selection("receive");
     lamp_.cast = selection("cast");
-    lamp_.origin = origin_.text;
+    lamp_.given_by = given_by_.text;
     return lamp_;
   }
 
  private:
   [[noreturn]] void refuse(const std::string& what) const {
-    throw Error(origin_.code, fmt::format("{}: {}", origin_.text, what));
+    throw Error(given_by_.code, fmt::format("{}: {}", given_by_.text, what));
   }
 
   void read_name() {
@@ -105,8 +106,8 @@ class LampReader {
       refuse(fmt::format("name is {}; names of lights are 1 to {} letters, digits and _",
                          shown(value), kLongestName));
     }
-    const std::size_t number = origin_.text.rfind(' ') + 1;
-    origin_.text = origin_.text.substr(0, number) + lamp_.name;
+    const std::size_t number = given_by_.text.rfind(' ') + 1;
+    given_by_.text = given_by_.text.substr(0, number) + lamp_.name;
     if (lamp_.name == kEnvironmentName)
       refuse(
           fmt::format("name: '{}' is that of the environment map; give another", kEnvironmentName));
@@ -176,9 +177,9 @@ class LampReader {
       refuse(
           fmt::format("{} is {}; it is a selection, such as \"crypto:ball\"", key, shown(value)));
     try {
-      return parse_selection(fmt::format("{}: {}", origin_.text, key), value.get<std::string>());
+      return parse_selection(fmt::format("{}: {}", given_by_.text, key), value.get<std::string>());
     } catch (const Error& error) {
-      throw Error(origin_.code, error.what());
+      throw Error(given_by_.code, error.what());
     }
   }
 
@@ -299,15 +300,15 @@ class LampReader {
   }
 
   const json& object_;
-  LampOrigin origin_;
+  LampOption given_by_;
   std::string type_;
   Lamp lamp_;
 };
 
 }  // namespace
 
-Lamp read_lamp(const json& object, const LampOrigin& origin) {
-  return LampReader(object, origin).read();
+Lamp read_lamp(const json& object, const LampOption& given_by) {
+  return LampReader(object, given_by).read();
 }
 
 }  // namespace ssdo

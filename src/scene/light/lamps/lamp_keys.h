@@ -10,13 +10,13 @@
 namespace ssdo {
 
 /// Where a lamp is described, for errors: "FILE: light 2".
-struct LampOrigin {
+struct LampOption {
   ExitCode code;
   std::string text;
 };
 
 /// The lamp that an object with the keys of `man ssdo`, LIGHTS, describes. Errors: the code of
-/// `origin`, for unknown and missing keys, and for values that mean no lamp.
-Lamp read_lamp(const nlohmann::json& object, const LampOrigin& origin);
+/// `given_by`, for unknown and missing keys, and for values that mean no lamp.
+Lamp read_lamp(const nlohmann::json& object, const LampOption& given_by);
 
 }  // namespace ssdo

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// NearLamp::seen() and cone() on vectors of surfaces. Compiled once for every instruction set.
+// LocalLamp::seen() and cone() on vectors of surfaces. Compiled once for every instruction set.
 #if defined(SSDO_SCENE_LAMP_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_SCENE_LAMP_POINTS_INL_H_
 #undef SSDO_SCENE_LAMP_POINTS_INL_H_
@@ -8,7 +8,7 @@
 #define SSDO_SCENE_LAMP_POINTS_INL_H_
 #endif
 
-#include "scene/light/lamps/near_lamp-inl.h"
+#include "scene/light/lamps/local_lamp-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -20,19 +20,20 @@ struct LampSamples {
 };
 
 // SphereLamp::sample()
-HWY_INLINE LampSamples sample_sphere(const NearLamp& lamp, const V3& p, const V2& disk) {
+HWY_INLINE LampSamples sample_sphere(const LocalLamp& lamp, const V3& p, const V2& disk) {
   constexpr float kTouching = 1e-4f;
   const V squared = hn::Max(dot(p, p), set(1e-30f)), distance = hn::Sqrt(squared),
           inverse = set(1) / distance;
-  const M inside = lamp.turns ? distance < set(0) : distance < set(1);
-  const V sine2 = lamp.turns ? set(1) / (squared + set(1)) : hn::Min(squared, set(1) / squared),
-          cosine = lamp.turns ? distance * hn::Sqrt(sine2) : root(set(1) - sine2);
+  const M inside = lamp.faces_receiver ? distance < set(0) : distance < set(1);
+  const V sine2 = lamp.faces_receiver ? set(1) / (squared + set(1))
+                                      : hn::Min(squared, set(1) / squared),
+          cosine = lamp.faces_receiver ? distance * hn::Sqrt(sine2) : root(set(1) - sine2);
   const V all = hn::IfThenElse(inside, set(1) + cosine, sine2 / (set(1) + cosine));
   const V down = dot(disk, disk) * all, stretch = root(all * (set(2) - down));
   const V3 in_cap{disk.x * stretch, disk.y * stretch, set(1) - down};
   const V aside = distance * stretch, chord = root(set(1) - aside * aside * dot(disk, disk));
-  const V first =
-      lamp.turns ? distance / hn::Max(in_cap.z, set(kTouching)) : distance * in_cap.z - chord;
+  const V first = lamp.faces_receiver ? distance / hn::Max(in_cap.z, set(kTouching))
+                                      : distance * in_cap.z - chord;
   return {in_frame_about(p * hn::Neg(inverse), in_cap),
           hn::IfThenElse(inside, set(kTouching), hn::Max(first, set(kTouching))),
           set(6.28318531f) * all};
@@ -71,7 +72,7 @@ HWY_INLINE LampSamples sample_disk(const V3& p, const V2& disk) {
 }
 
 // RectLamp::sample()
-HWY_INLINE LampSamples sample_rect(const NearLamp& lamp, const V3& p, const V2& share) {
+HWY_INLINE LampSamples sample_rect(const LocalLamp& lamp, const V3& p, const V2& share) {
   constexpr float kFar = float(kFarFromRect), kFull = 6.28318531f;
   const V half_x = set(float(lamp.half_sides.x)), half_y = set(float(lamp.half_sides.y)),
           h = hn::Max(p.z, set(1e-12f)), one = set(1);
@@ -105,18 +106,19 @@ HWY_INLINE LampSamples sample_rect(const NearLamp& lamp, const V3& p, const V2& 
           hn::IfThenElseZero(p.z > set(0), hn::IfThenElse(far, even, solid_angle))};
 }
 
-HWY_INLINE SourcePoints seen(const NearLamp& lamp, const V3& position, const V3& point) {
+HWY_INLINE SourcePoints seen(const LocalLamp& lamp, const V3& position, const V3& point) {
   const V3 p = place_at_lamp(lamp, position);
   const V2 place{point.x, point.y};
   const LampSamples found = lamp.shape == LampShape::sphere ? sample_sphere(lamp, p, place)
                             : lamp.shape == LampShape::disk ? sample_disk(p, place)
                                                             : sample_rect(lamp, p, place);
   V weight = found.solid_angle * per_solid_angle(lamp, hn::Sqrt(dot(p, p)));
-  if (!lamp.lit.is_open()) weight = weight * share_in_cone(lamp.lit, hn::Neg(found.to.z));
+  if (!lamp.spot_cone.is_open())
+    weight = weight * share_in_cone(lamp.spot_cone, hn::Neg(found.to.z));
   return {from_lamp(lamp, found.to), found.distance * set(float(lamp.size)), weight};
 }
 
-HWY_INLINE SourceCones cones(const NearLamp& lamp, const V3& position) {
+HWY_INLINE SourceCones cones(const LocalLamp& lamp, const V3& position) {
   const V3 way = set(lamp.center) - position;
   const V distance = hn::Sqrt(hn::Max(dot(way, way), set(1e-30f))),
           sine = hn::Min(set(float(lamp.reach() * lamp.size)) / distance, set(1));

@@ -125,7 +125,7 @@ void name_lamps(std::vector<Lamp>& lamps) {
         ExitCode::usage,
         fmt::format("{}: is light {} of {}, and {} is the most; leave lights out, or render "
                     "far ones into the map of --env",
-                    lamps[kMostLamps].origin, kMostLamps + 1, lamps.size(), kMostLamps));
+                    lamps[kMostLamps].given_by, kMostLamps + 1, lamps.size(), kMostLamps));
   }
   std::map<std::string, const Lamp*> named;
   for (std::size_t i = 0; i < lamps.size(); ++i) {
@@ -134,8 +134,8 @@ void name_lamps(std::vector<Lamp>& lamps) {
     const auto [other, is_new] = named.emplace(lamp.name, &lamp);
     if (!is_new) {
       throw Error(ExitCode::usage,
-                  fmt::format("{}: name '{}' is also that of {}; names have to differ", lamp.origin,
-                              lamp.name, other->second->origin));
+                  fmt::format("{}: name '{}' is also that of {}; names have to differ",
+                              lamp.given_by, lamp.name, other->second->given_by));
     }
   }
 }

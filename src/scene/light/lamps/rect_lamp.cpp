@@ -107,14 +107,14 @@ LampSample RectLamp::sample(const glm::dvec3& position, const glm::dvec2& point)
   return {way / distance, distance, std::max(0.0, seen.solid_angle)};
 }
 
-LampBends RectLamp::bends(const glm::dvec3& position) const {
+LampBreakpoints RectLamp::breakpoints(const glm::dvec3& position) const {
   const Sides s(half_sides, position);
   if (!(s.height > 0)) return {{kPi, kPi}, 2};
   const double begin = glm::length(glm::max(glm::max(s.low, -s.high), glm::dvec2(0))),
                end = glm::length(glm::max(glm::abs(s.low), glm::abs(s.high)));
-  LampBends bends;
+  LampBreakpoints breakpoints;
   const auto add = [&](double radius) {
-    bends.add(std::atan2(std::clamp(radius, begin, end), s.height));
+    breakpoints.add(std::atan2(std::clamp(radius, begin, end), s.height));
   };
   add(begin), add(end);
   // Sides and corners that the circles about the foot pass in between.
@@ -123,7 +123,7 @@ LampBends RectLamp::bends(const glm::dvec3& position) const {
     for (const double y : {s.low.y, s.high.y}) add(std::hypot(x, y));
   }
   for (const double y : {s.low.y, s.high.y}) add(std::abs(y));
-  return bends;
+  return breakpoints;
 }
 
 LampArcs RectLamp::arcs(const glm::dvec3& position, double off_axis) const {

@@ -3,14 +3,14 @@
 
 #include <glm/geometric.hpp>
 
-#include "scene/light/lamps/near_lamp.h"
+#include "scene/light/lamps/local_lamp.h"
 
 namespace ssdo {
 
 /// A rectangle that sends the same radiance from all of its front; `size` is half of its longer
 /// side.
-struct RectLamp final : NearLamp {
-  RectLamp() : NearLamp(LampShape::rect) {}
+struct RectLamp final : LocalLamp {
+  RectLamp() : LocalLamp(LampShape::rect) {}
 
   double shown_area() const override { return 4 * half_sides.x * half_sides.y; }
   double reach() const override { return glm::length(half_sides); }
@@ -18,7 +18,7 @@ struct RectLamp final : NearLamp {
  protected:
   double integral(const LampReceiver& r) const override;
   LampSample sample(const glm::dvec3& position, const glm::dvec2& point) const override;
-  LampBends bends(const glm::dvec3& position) const override;
+  LampBreakpoints breakpoints(const glm::dvec3& position) const override;
   LampArcs arcs(const glm::dvec3& position, double off_axis) const override;
 };
 

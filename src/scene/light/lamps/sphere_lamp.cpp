@@ -21,9 +21,9 @@ struct Ball {
   glm::dvec3 to;
   Cap cap;
 
-  Ball(const glm::dvec3& position, bool turns) : distance(glm::length(position)) {
+  Ball(const glm::dvec3& position, bool faces_receiver) : distance(glm::length(position)) {
     to = distance > 0 ? -position / distance : glm::dvec3(0, 0, -1);
-    cap = turns ? Cap::of_disk(1, distance) : Cap::of_ball(1, distance);
+    cap = faces_receiver ? Cap::of_disk(1, distance) : Cap::of_ball(1, distance);
   }
   double angle() const { return std::atan2(cap.sine, cap.cosine); }
   /// Between the middle and the direction against the axis.
@@ -35,16 +35,16 @@ struct Ball {
 double SphereLamp::shown_area() const { return kPi; }
 
 double SphereLamp::integral(const LampReceiver& r) const {
-  const Ball ball(r.position, turns);
+  const Ball ball(r.position, faces_receiver);
   return kPi * form_factor_of_cap(glm::dot(r.normal, ball.to), ball.cap);
 }
 
 LampSample SphereLamp::sample(const glm::dvec3& position, const glm::dvec2& point) const {
-  const Ball ball(position, turns);
+  const Ball ball(position, faces_receiver);
   const double all = ball.cap.height();
   const glm::dvec3 in_cap = direction_in_cap(all, point);
   LampSample found{frame_of(ball.to) * in_cap, kTouching, 2 * kPi * all};
-  if (turns) {
+  if (faces_receiver) {
     found.distance = std::max(kTouching, ball.distance / std::max(in_cap.z, kTouching));
   } else if (ball.cap.cosine >= 0) {
     // Along the chord: its middle is nearest to that of the sphere.
@@ -55,8 +55,8 @@ LampSample SphereLamp::sample(const glm::dvec3& position, const glm::dvec2& poin
   return found;
 }
 
-LampBends SphereLamp::bends(const glm::dvec3& position) const {
-  const Ball ball(position, turns);
+LampBreakpoints SphereLamp::breakpoints(const glm::dvec3& position) const {
+  const Ball ball(position, faces_receiver);
   const double middle = ball.off_axis(), angle = ball.angle();
   const double far = middle + angle;
   return {{middle > angle ? middle - angle : 0, std::abs(middle - angle),
@@ -65,7 +65,7 @@ LampBends SphereLamp::bends(const glm::dvec3& position) const {
 }
 
 LampArcs SphereLamp::arcs(const glm::dvec3& position, double off_axis) const {
-  const Ball ball(position, turns);
+  const Ball ball(position, faces_receiver);
   const double middle = ball.off_axis();
   const double above = ball.cap.cosine - std::cos(middle) * std::cos(off_axis),
                across = std::sin(middle) * std::sin(off_axis);

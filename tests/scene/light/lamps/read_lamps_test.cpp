@@ -186,7 +186,7 @@ TEST(LampNames, DifferAndAreGivenToThoseWithout) {
   name_lamps(lamps);
   EXPECT_EQ(lamps[0].name, "light1");
   EXPECT_EQ(lamps[2].name, "light3");
-  lamps[0].name = "key", lamps[0].origin = "a.json: light key", lamps[1].origin = "--light key";
+  lamps[0].name = "key", lamps[0].given_by = "a.json: light key", lamps[1].given_by = "--light key";
   EXPECT_THAT(
       error_of([&] { name_lamps(lamps); }),
       IsError(ExitCode::usage, "--light key: name 'key' is also that of a.json: light key"));
