@@ -30,19 +30,11 @@
 //   of cos t are cheap to find (no arc function) and the same for all pixels, so that moments of
 //   masks come from tables (bitmask/slice_sectors.cpp). The point that stands for a sector differs
 //   from slice to slice, or a gentle curve would show the sectors as bands.
-//   Here they count by the integral of the cosine over them. Equal steps of cos t are cheap to find
-//   (no arc function) and the same for all pixels, so that moments of masks come from tables
-//   (bitmask/slice_sectors.cpp). The point that stands for a sector differs from slice to slice, or
-//   a gentle curve would show the sectors as bands.
-// - direct is a ratio to the exact unoccluded irradiance E(N), the ratio estimator of Heitz, Hill
-//   and McGuire (2018, Combining Analytic Direct Illumination and Stochastic Shadows): the noise
 // - direct is a ratio to the exact unoccluded irradiance E(N), the ratio estimator of Heitz, Hill
 //   and McGuire (2018, Combining Analytic Direct Illumination and Stochastic Shadows): the noise of
 //   a few directions cancels. L is the environment without its sources, in spherical harmonics.
 //   Rays go to points of each source (bitmask/rays/source.cpp), and along the directions that
 //   facets mirror (bitmask/rays/reflection.cpp).
-//   sources; each source has rays to its points (bitmask/rays/source.cpp). So is what facets mirror
-//   (bitmask/rays/reflection.cpp).
 // - bounce takes the radiance of the first surface in each sector; no 1/d^2, so no singularity
 //   (bitmask/bounce.cpp, bitmask/senders.cpp). Rays go to bright senders (bitmask/rays/emitters.h).
 // - A sampled pixel represents the stretch of the march up to halfway to the samples before and
@@ -52,11 +44,8 @@
 //   surfaces beyond the frame (bitmask/border/extension-inl.h) are guessed; GTAO has none of these.
 //   How much light passes surfaces beyond the frame: bitmask/border/beyond.h,
 //   bitmask/border/border_extents.h.
-//   surfaces beyond the frame (bitmask/border/extension-inl.h). How much light comes through the
-//   latter: bitmask/border/beyond.h, bitmask/border/border_extents.h.
 // - Surfaces that only other views show may be anywhere, even behind the camera: rays test them for
 //   the sectors that the march leaves open (bitmask/other_views-inl.h).
-//   sectors that the march leaves open (bitmask/other_views-inl.h).
 #include "estimators/bitmask.h"
 
 #include <algorithm>
@@ -93,8 +82,8 @@ class Bitmask {
                  ? request.around_band->far.get()
                  : nullptr),
         pattern_(pattern_of(request, layout_, scene.geometry.display, overview_raster())),
-        bounce_pattern_(
-            bounce_pattern_of(request, layout_, scene.geometry.display, overview_raster())),
+        bounce_pattern_(bounce_pattern_of(request, scene.light.has_local_lamps(), layout_,
+                                          scene.geometry.display, overview_raster())),
         other_views_(OtherViewRays::of_added(scene.other_surfaces)),
         march_(march_with(pattern_)),
         bounce_march_(march_with(bounce_pattern_)) {}

@@ -11,8 +11,11 @@ namespace ssdo {
 namespace {
 
 /// Bounce light is a small part of all light on most surfaces: with two thirds of the steps it adds
-/// less noise than direct light has. Measured on seven frames.
-constexpr int bounce_steps(int steps) { return (2 * steps + 2) / 3; }
+/// less noise than direct light has. Measured on seven frames. The light of a lamp changes within a
+/// few pixels, and a step that passes over a small bright place gives bias, not only noise.
+constexpr int bounce_steps(int steps, bool has_lamps) {
+  return has_lamps ? 2 * steps : (2 * steps + 2) / 3;
+}
 
 /// With few slices, one pixel of 2 x 2 gathers bounce light, in 2.5 times as many slices. Compared
 /// with 1.5 times as many, noise falls by 20 to 30 % for 2 % of a job.
@@ -31,13 +34,13 @@ SlicePattern pattern_of(const Request& request, const Interleaving& layout, cons
   return {layout, display, request.slices, request.steps, request.seed, 1, far};
 }
 
-SlicePattern bounce_pattern_of(const Request& request, const Interleaving& layout,
+SlicePattern bounce_pattern_of(const Request& request, bool has_lamps, const Interleaving& layout,
                                const Window& display, const OverviewRaster* far) {
   const int slices = request.slices;
   return {layout,
           display,
           bounce_slices(slices),
-          bounce_steps(request.steps),
+          bounce_steps(request.steps, has_lamps),
           request.seed,
           bounce_spacing(slices),
           far};
@@ -49,7 +52,7 @@ int reach_rows(const Geometry& some, int stride, const Window& frame, const Wind
   if (!(reach < float(frame.height()))) return frame.height();
   const Interleaving layout(frame.width(), 1, 0);
   const int rows = std::max({pattern_of(request, layout, display).rows_within(reach),
-                             bounce_pattern_of(request, layout, display).rows_within(reach),
+                             bounce_pattern_of(request, false, layout, display).rows_within(reach),
                              mean_ao_pattern(layout, display).rows_within(reach)});
   return std::min(rows + kRowsAround, frame.height());
 }

@@ -11,8 +11,9 @@ namespace ssdo {
 SlicePattern pattern_of(const Request& request, const Interleaving& layout, const Window& display,
                         const OverviewRaster* far = nullptr);
 
-/// The slices in which a request gathers bounce light.
-SlicePattern bounce_pattern_of(const Request& request, const Interleaving& layout,
+/// The slices in which a request gathers bounce light. `has_lamps`: some of it is that of lamps
+/// that stand in the scene.
+SlicePattern bounce_pattern_of(const Request& request, bool has_lamps, const Interleaving& layout,
                                const Window& display, const OverviewRaster* far = nullptr);
 
 /// As BandSupport has it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <glm/mat3x3.hpp>
@@ -43,6 +44,10 @@ struct Light {
 
   /// unoccluded_sky() of a map. From its texels, not from the bands.
   OctahedralMap irradiance{2};
+
+  bool has_local_lamps() const {
+    return std::ranges::any_of(sources, [](const auto& source) { return source->local_lamp(); });
+  }
 
   // The light of a surface that has nothing around it, as irradiance over pi; light-inl.h has the
   // same for vectors. Nothing else computes it.
