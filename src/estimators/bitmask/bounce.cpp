@@ -14,6 +14,7 @@
 #define HWY_TARGET_INCLUDE "estimators/bitmask/bounce.cpp"
 #include <hwy/foreach_target.h>
 
+#include "estimators/bitmask/border/lamp_beyond-inl.h"
 #include "estimators/bitmask/met_senders-inl.h"
 #include "estimators/bitmask/moments-inl.h"
 #include "estimators/bitmask/rays/unseen_senders-inl.h"
@@ -129,8 +130,15 @@ void gather_light(const BounceJob& job, const Window& part) {
                 from_others,
                 [&](bool far, const Border& border, VU bits) HWY_ATTR {
                   receive(bits, [&]() HWY_ATTR {
-                    const BorderValues* sent = far ? job.far->border.data() : job.sent_border;
-                    return V3{border(sent[0]), border(sent[1]), border(sent[2])};
+                    const BorderValues* values = far ? job.far->border.data() : job.sent_border;
+                    const V3 sent{border(values[0]), border(values[1]), border(values[2])};
+                    const std::vector<LampBeyond>& lamps = far ? job.far->lamps : job.lamps;
+                    if (lamps.empty()) return sent;
+                    return sent + (far ? sent_beyond<kOrthographic>(march.far->scene, lamps,
+                                                                    in_overview_pixels(march, p),
+                                                                    side, border, bits)
+                                       : sent_beyond<kOrthographic>(march.scene, lamps, p, side,
+                                                                    border, bits));
                   });
                 });
             if (unseen.count == 0) continue;

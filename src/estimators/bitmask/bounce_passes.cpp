@@ -42,6 +42,8 @@ struct Pass {
   const Emitters& emitters;          ///< chosen by `of_all`
   const OverviewLight* far_of_all;
   GatheredLight& gathered;
+  const std::vector<LampBeyond>& lamps;  ///< that stand in the scene
+  const SentAtBorder& other_at_border;   ///< what all other light sends there
 };
 
 /// A surface that replaces objects which cast nothing sends what its sender, a pixel beside it,
@@ -62,6 +64,21 @@ void send_from_hole(const Raster& raster, const Surfaces& shown, const Plane<int
       for (InterleavedPlane& channel : sent) channel[i] = channel[q];
     });
   });
+}
+
+/// What pixels of a part of the raster send of light that is not given as a layer.
+void send_light(const BounceInputs& inputs, const LightGroup& light, const Window& part,
+                const BouncedLight* before, InterleavedVectors& sent) {
+  const Scene& scene = inputs.scene;
+  const SenderJob senders{inputs.march.scene,
+                          visibility_of(light, inputs.ao, inputs.sky, inputs.sources),
+                          scene.senders.albedo,
+                          before ? &before->bounce : nullptr,
+                          inputs.change,
+                          before ? before->sent : glm::vec3(0),
+                          &sent,
+                          sends_two_sided(scene)};
+  for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
 }
 
 class BouncePasses {
@@ -118,7 +135,9 @@ class BouncePasses {
         {march_scene_, sent, two_sided_, lit, in_.march.far, overview_light}, request_.seed);
     const bool wants_error = request_.products.error && number == request_.bounces;
     GatheredLight gathered(in_.march, wants_error);
-    const Pass pass{number, lit, to, sent, emitters, overview_light, gathered};
+    const std::vector<LampBeyond> lamps = lamps_beyond(all_.light, lit);
+    const SentAtBorder other = without_lamps(sent_at_border(march_scene_, sent, two_sided_), lamps);
+    const Pass pass{number, lit, to, sent, emitters, overview_light, gathered, lamps, other};
     std::vector<OverviewLight> kept;
     for (std::size_t k = 0; k < each_.size(); ++k) {
       InterleavedVectors of_light = sent_light(lit, each_[k], number);
@@ -160,6 +179,25 @@ class BouncePasses {
     return light.from_afar * all;
   }
 
+  /// The lamps of `light` that stand in the scene; `lit`: the pixels that send.
+  std::vector<LampBeyond> lamps_beyond(const LightGroup& light, const Window& lit) const {
+    std::vector<LampBeyond> lamps;
+    if (!is_lit_ || !in_.march.extend || scene_.caster_surfaces) return lamps;
+    const int width = march_scene_.layout.width(), height = march_scene_.layout.height();
+    for (std::size_t k = 0; k < light.source_indices.size(); ++k) {
+      const auto& lamp = light.light.sources[k];
+      if (!lamp->local_lamp()) continue;
+      LightGroup one{lamp->name, {}, {light.source_indices[k]}};
+      one.light.sources.push_back(lamp);
+      InterleavedVectors sent = in_.raster.make_color();
+      for (const Window& border : {Window{0, 0, width, 1}, Window{0, height - 1, width, height},
+                                   Window{0, 0, 1, height}, Window{width - 1, 0, width, height}})
+        send_light(in_, one, intersection(border, lit), nullptr, sent);
+      lamps.push_back({lamp.get(), sent_at_border(march_scene_, sent, two_sided_)});
+    }
+    return lamps;
+  }
+
   /// Replaces the sent light by the light that arrives. Returns what bands need of the sent light,
   /// if `keep_in` is set. `points`: targets of rays, with this light. `error` may be null.
   OverviewLight gather(BounceState& light, InterleavedVectors& sent, const Pass& pass,
@@ -167,16 +205,26 @@ class BouncePasses {
                        InterleavedPlane* error) {
     if (request_.ask_prior)
       light.found.sent = overview_light ? overview_light->mean : sent_by_unshown(light, sent, pass);
-    const std::array<BorderValues, 3> border =
-        light_beyond(march_scene_, sent, pass.of_all, two_sided_, pass.emitters.bright);
+    std::vector<LampBeyond> lamps;
+    for (const LampBeyond& of : pass.lamps) {
+      const auto is_it = [&](const auto& source) { return source.get() == of.lamp; };
+      if (std::ranges::any_of(light.light.light.sources, is_it)) lamps.push_back(of);
+    }
+    const SentAtBorder border =
+        light_beyond(without_lamps(sent_at_border(march_scene_, sent, two_sided_), lamps),
+                     pass.other_at_border, pass.emitters.bright);
     OverviewLight kept{{}, {}, pass.emitters.bright, pass.emitters.level, light.found.sent};
-    if (in_.keep_in) kept.sent = in_.raster.in_whole_rows(sent, *in_.keep_in), kept.border = border;
+    if (in_.keep_in) {
+      kept.sent = in_.raster.in_whole_rows(sent, *in_.keep_in);
+      kept.border = border, kept.lamps = lamps;
+    }
     const Emitters* const bright = pass.emitters.points.empty() ? nullptr : &pass.emitters;
     const OtherViewLight* const from_others =
         in_.march.other_views ? &light.sent_by_others[std::size_t(pass.number - 1)] : nullptr;
-    const BounceJob job{in_.march,      &in_.ao,         &sent,       &pass.of_all,   two_sided_,
-                        scene_.solids,  border.data(),   from_others, pass.lit,       overview_,
-                        overview_light, pass.far_of_all, bright,      &pass.gathered, error};
+    const BounceJob job{in_.march,       &in_.ao,       &sent,          &pass.of_all,
+                        two_sided_,      scene_.solids, border.data(),  lamps,
+                        from_others,     pass.lit,      overview_,      overview_light,
+                        pass.far_of_all, bright,        &pass.gathered, error};
     for_each_band_of(
         grown(march_scene_.layout, pass.to, in_.march.pattern.spacing() - 1),
         [&](const Window& part) { march_bounce(job, part); }, in_.progress);
@@ -257,15 +305,7 @@ InterleavedVectors sent_light(const BounceInputs& inputs, const LightGroup& ligh
     return given;
   }
   InterleavedVectors sent = inputs.raster.make_color();
-  const SenderJob senders{inputs.march.scene,
-                          visibility_of(light, inputs.ao, inputs.sky, inputs.sources),
-                          scene.senders.albedo,
-                          before ? &before->bounce : nullptr,
-                          inputs.change,
-                          before ? before->sent : glm::vec3(0),
-                          &sent,
-                          sends_two_sided(scene)};
-  for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
+  send_light(inputs, light, part, before, sent);
   if (scene.caster_surfaces)
     send_from_hole(inputs.raster, scene.geometry.surfaces, scene.caster_surfaces->sender, sent);
   return sent;

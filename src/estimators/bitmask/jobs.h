@@ -100,6 +100,7 @@ struct BounceJob {
   bool two_sided;                        ///< as SenderJob has it
   const Solids& solids;                  ///< of the scene: whose light layers 1, 2, ... send
   const BorderValues* sent_border;       ///< three: of surfaces that continue beyond the frame
+  const std::vector<LampBeyond>& lamps;  ///< whose light `sent_border` lacks
   const OtherViewLight* sent_by_others;  ///< of what only other views show
   Window lit;                            ///< the pixels of the raster whose `sent` is known
   const OverviewScene* overview;         ///< gives the light of the others; null: all are lit

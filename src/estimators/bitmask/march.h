@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "estimators/bitmask/border/border_extents.h"
+#include "estimators/bitmask/border/border_light.h"
 #include "estimators/bitmask/march_scene.h"
 #include "estimators/bitmask/rays/depth_bounds.h"
 #include "estimators/bitmask/slice_pattern.h"
@@ -21,8 +22,9 @@ namespace ssdo {
 struct OverviewLight {
   InterleavedVectors sent;  ///< in the order of OverviewRaster
   std::array<BorderValues, 3> border;
-  float bright, level;  ///< as Emitters has them, of the frame
-  glm::vec3 mean{0};    ///< of `sent`, as BouncedLight has it
+  float bright, level;                 ///< as Emitters has them, of the frame
+  glm::vec3 mean{0};                   ///< of `sent`, as BouncedLight has it
+  std::vector<LampBeyond> lamps = {};  ///< whose light `border` lacks
   std::vector<OverviewLight> lights =
       {};  ///< each light's part of it, where the bounce is by light
 };

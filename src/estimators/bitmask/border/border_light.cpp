@@ -13,12 +13,9 @@
 
 namespace ssdo {
 
-namespace {
-
-/// What the front sides of the pixels at the border send; 0 for pixels without a surface.
-std::array<BorderValues, 3> sent_at_border(const MarchScene& scene,
-                                           const InterleavedVectors& radiance, bool two_sided) {
-  std::array<BorderValues, 3> sent;
+SentAtBorder sent_at_border(const MarchScene& scene, const InterleavedVectors& radiance,
+                            bool two_sided) {
+  SentAtBorder sent;
   // A mask, because g++ 12 with -O2 turns a choice between unpack_bf16_first() and the number into
   // the number.
   const std::uint32_t kept = two_sided ? kUpperHalf : ~std::uint32_t(0);
@@ -32,20 +29,23 @@ std::array<BorderValues, 3> sent_at_border(const MarchScene& scene,
   return sent;
 }
 
-}  // namespace
-
-std::array<BorderValues, 3> light_beyond(const MarchScene& scene,
-                                         const InterleavedVectors& radiance,
-                                         const InterleavedVectors& of_all, bool two_sided,
-                                         float level) {
-  std::array<BorderValues, 3> beyond = sent_at_border(scene, radiance, two_sided);
-  const std::array<BorderValues, 3> all = sent_at_border(scene, of_all, two_sided);
-  for (std::size_t i = 0; i < all[0].size(); ++i) {
-    const float light = luminance({all[0][i], all[1][i], all[2][i]});
-    if (!(light > level)) continue;
-    for (BorderValues& channel : beyond) channel[i] *= level / light;
+SentAtBorder without_lamps(SentAtBorder sent, const std::vector<LampBeyond>& lamps) {
+  for (const LampBeyond& of : lamps) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t i = 0; i < sent[c].size(); ++i)
+        sent[c][i] = std::max(sent[c][i] - of.sent[c][i], 0.0f);
+    }
   }
-  return beyond;
+  return sent;
+}
+
+SentAtBorder light_beyond(SentAtBorder sent, const SentAtBorder& of_all, float level) {
+  for (std::size_t i = 0; i < of_all[0].size(); ++i) {
+    const float light = luminance({of_all[0][i], of_all[1][i], of_all[2][i]});
+    if (!(light > level)) continue;
+    for (BorderValues& channel : sent) channel[i] *= level / light;
+  }
+  return sent;
 }
 
 glm::vec3 mean_sent(const MarchScene& scene, const Geometry& geometry, const SentByAll& sent) {

@@ -44,7 +44,8 @@ void find_reflection(const ReflectionInput& input, Products& products, const Pro
     const bool sends = sent[0].data() != nullptr;
     if (sends) {
       const float level = bright_level({march.scene, sent, input.two_sided, input.lit}).bright;
-      beyond = light_beyond(march.scene, sent, sent, input.two_sided, level);
+      const SentAtBorder at_border = sent_at_border(march.scene, sent, input.two_sided);
+      beyond = light_beyond(at_border, at_border, level);
     }
     light.emplace(MirroredLightJob{*products.visibility.mirror, scene.specular_color,
                                    sends ? &sent : nullptr, input.two_sided,
