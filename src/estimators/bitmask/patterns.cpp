@@ -12,9 +12,11 @@ namespace {
 
 /// Bounce light is a small part of all light on most surfaces: with two thirds of the steps it adds
 /// less noise than direct light has. Measured on seven frames. The light of a lamp changes within a
-/// few pixels, and a step that passes over a small bright place gives bias, not only noise.
+/// few pixels, and a step that passes over a small bright place gives bias, not only noise. Error
+/// of the bounce of nine lamps with 2/3, 3/2 and twice the steps: 0.589, 0.560 and 0.556; CPU time
+/// of ao, direct and bounce of one lamp: 1, 1.09 and 1.15.
 constexpr int bounce_steps(int steps, bool has_lamps) {
-  return has_lamps ? 2 * steps : (2 * steps + 2) / 3;
+  return has_lamps ? 3 * steps / 2 : (2 * steps + 2) / 3;
 }
 
 /// With few slices, one pixel of 2 x 2 gathers bounce light, in 2.5 times as many slices. Compared
