@@ -38,7 +38,7 @@ struct ShadowSample {
   Plane<float> width_px;  ///< of the penumbra that the occluder throws here; 0: none
 };
 
-/// How much of the light arrives: what filters average in place of `direct` (filters/shares.h).
+/// How much of the light arrives: what filters average in place of `direct` (filters/light_visibility.h).
 /// About 0..1, but noise is not cut off, so that means are right.
 struct LightVisibility {
   Plane<glm::vec3> sky;               ///< of what the sky gives, channel by channel

@@ -5,7 +5,7 @@
 
 namespace ssdo {
 
-/// Lengths from here on count as endless. The squares of shorter ones fit into a float, and Embree
+/// Lengths from here on count as infinite. The squares of shorter ones fit into a float, and Embree
 /// takes no longer ones.
 constexpr float kInfiniteLength = 1e18f;
 

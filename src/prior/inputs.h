@@ -69,7 +69,7 @@ class PriorInputs {
   static constexpr std::size_t kOwn = kOfPixel + kScales * kOfScale,
                                kShared = kOfFrame + 4 * kOfSide;
 
-  /// `squares` with the means of what was found; `radius` in scene units, or infinity; `up` as
+  /// `grid` with the means of what was found; `radius` in scene units, or infinity; `up` as
   /// prior_axes() has it. `of_frame`: the context of the frame, if the geometry is a band; null:
   /// found from the squares.
   PriorInputs(const PriorGrid& grid, const Geometry& geometry, const std::optional<glm::vec3>& up,

@@ -35,7 +35,7 @@
 // mean by rules, 0.59 so; with the factor mean of albedo ao' / albedo ao for all senders 0.61, with
 // lit senders alone 0.67.
 //
-// All of it is found on a coarse grid (prior/squares.h). Values are interpolated between the four
+// All of it is found on a coarse grid (prior/prior_grid.h). Values are interpolated between the four
 // squares around a pixel, by how far these show its surface (scene/same_surface.h).
 #pragma once
 

@@ -18,8 +18,8 @@ struct Surfel {
 
   glm::vec3 position{0};
   glm::vec3 normal{0};  ///< unit, on the viewer's side
-  float rounding =
-      kBackground;  ///< distance by which the rounding of P as stored may have moved it
+  /// Distance by which the rounding of P as stored may have moved the position.
+  float rounding = kBackground;
 
   /// Whether there is a surface.
   bool is_surface() const { return rounding >= 0; }
@@ -70,7 +70,7 @@ struct Surfaces {
 
   bool is_surface(std::size_t i) const { return rounding[i] >= 0; }
 
-  /// What a pixel shows; a copy, see set().
+  /// What a pixel shows. A const copy: an assignment to it, which would be lost, does not compile.
   const Surfel operator[](std::size_t i) const {  // NOLINT(readability-const-return-type)
     return {{position[0][i], position[1][i], position[2][i]},
             {normal[0][i], normal[1][i], normal[2][i]},
@@ -103,7 +103,7 @@ struct Surfaces {
     }
   }
 
-  /// What the pixels show, as a range, row by row.
+  /// What the pixels show, as a range, row by row. These surfaces have to live as long as it.
   auto each() const {
     return std::views::iota(std::size_t(0), size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });

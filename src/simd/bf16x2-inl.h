@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// math/pack_bf16x2.h for vectors; compiled once for every instruction set.
+// math/bf16x2.h for vectors; compiled once for every instruction set.
 #if defined(SSDO_SIMD_BF16X2_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_SIMD_BF16X2_INL_H_
 #undef SSDO_SIMD_BF16X2_INL_H_

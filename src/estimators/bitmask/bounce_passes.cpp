@@ -184,12 +184,12 @@ class BouncePasses {
     std::vector<LampBeyond> lamps;
     if (!is_lit_ || !in_.march.extend || scene_.caster_surfaces) return lamps;
     const int width = march_scene_.layout.width(), height = march_scene_.layout.height();
+    InterleavedVectors sent = in_.raster.make_color();  // set at the border alone
     for (std::size_t k = 0; k < light.source_indices.size(); ++k) {
       const auto& lamp = light.light.sources[k];
       if (!lamp->local_lamp()) continue;
       LightGroup one{lamp->name, {}, {light.source_indices[k]}};
       one.light.sources.push_back(lamp);
-      InterleavedVectors sent = in_.raster.make_color();
       for (const Window& border : {Window{0, 0, width, 1}, Window{0, height - 1, width, height},
                                    Window{0, 0, 1, height}, Window{width - 1, 0, width, height}})
         send_light(in_, one, intersection(border, lit), nullptr, sent);

@@ -9,7 +9,7 @@
 //   value(p) = (own(p) + sum over others of w s(p')) / (1 + sum of w)
 //
 // s(p') is what another frame has found at the point that p shows, the bilinear average of the
-// pixels around it that show the same surface (filters/shot/sights.h). All frames count alike, so
+// pixels around it that show the same surface (filters/shot/shot_reprojection.h). All frames count alike, so
 // that a frame that comes into reach, or leaves it, changes the mean least. For direct light,
 // shares are averaged and not the light, so that the light itself and the shading by normals stay
 // those of the frame. Bounce is averaged as it is.
@@ -17,7 +17,7 @@
 // Things move, and light changes with them. w is less where a thing that stands in only one of both
 // frames hides light from p (filters/shot/moved_weights.h): for a source if the thing may cast a
 // shadow on p, for all other light by its form factor. A surface that moves is looked up where its
-// motion layer leads, and its light there is that of its new place (filters/shot/followed.cpp).
+// motion layer leads, and its light there is that of its new place (filters/shot/point_tracker.cpp).
 // Lamps in the picture are switched on and off: for light that surfaces send, another frame has the
 // weight
 //

@@ -11,7 +11,7 @@
 // The shadow of a ball from a source is a cylinder that widens by the angle of the source. The
 // weight falls to 0 between twice its radius and once.
 //
-// A receiver that moves is followed (filters/shot/followed.cpp). What moves along with it hides the
+// A receiver that moves is followed (filters/shot/point_tracker.cpp). What moves along with it hides the
 // same of its hemisphere at both times. A ball that has moved by w beside p, the difference of both
 // velocities times the number of frames between, counts by F min(w / 2r, 1), F the larger one of
 // its places at both times.

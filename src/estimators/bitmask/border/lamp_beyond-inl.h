@@ -25,7 +25,8 @@ namespace ssdo::HWY_NAMESPACE {
 
 /// The plane that a surface at the border continues in.
 struct BorderPlane {
-  V3 position, normal;  ///< in the middle of the border pixel; unit
+  V3 position;  ///< in the middle of the border pixel
+  V3 normal;    ///< unit
 };
 
 template <bool kOrthographic>
