@@ -153,7 +153,7 @@ class Guesses {
   /// Distance to the viewer of the farthest surface.
   float farthest_surface() const {
     float farthest = 0;
-    for (const Surfel& s : surfaces_.each())
+    for (const Surfel& s : surfaces_)
       if (s.is_usable()) farthest = std::max(farthest, glm::length(s.position));
     return farthest;
   }

@@ -54,7 +54,7 @@ void warn_of_radius(Frame& frame, const ModelOptions& model) {
   const double pixel =
       double(g.frame_height_at(g.median_depth)) / frame.gbuffer.display_of_file().height();
   glm::vec3 low(INFINITY), high(-INFINITY);
-  for (const Surfel& s : g.surfaces.each()) {
+  for (const Surfel& s : g.surfaces) {
     if (!s.is_surface()) continue;
     low = glm::min(low, s.position), high = glm::max(high, s.position);
   }

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
-#include <ranges>
 
 #include "math/plane.h"
 #include "parallel/planes.h"
@@ -103,11 +102,17 @@ struct Surfaces {
     }
   }
 
-  /// What the pixels show, as a range, row by row. These surfaces have to live as long as it.
-  auto each() const {
-    return std::views::iota(std::size_t(0), size()) |
-           std::views::transform([this](std::size_t i) { return (*this)[i]; });
-  }
+  /// Walks over what the pixels show, row by row.
+  struct Iterator {
+    const Surfaces* surfaces;
+    std::size_t i;
+
+    Surfel operator*() const { return (*surfaces)[i]; }
+    Iterator& operator++() { return ++i, *this; }
+    bool operator==(const Iterator&) const = default;
+  };
+  Iterator begin() const { return {this, 0}; }
+  Iterator end() const { return {this, size()}; }
 
   /// Calls visit(Plane<float>&) for the planes.
   template <class Visit>

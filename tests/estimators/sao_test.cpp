@@ -132,7 +132,7 @@ TEST(Sao, AnOpenPlaneReadsOneWhileItsTapsReadFullResolution) {
     for (const double tilt : {0.0, 30.0, 60.0, 80.0}) {
       const Geometry g = geometry_of(plane({}, {0, 0, 1}), tilted(projection, tilt), kWindow);
       float nearest = 1e9f;
-      for (const Surfel& s : g.surfaces.each())
+      for (const Surfel& s : g.surfaces)
         if (s.is_surface()) nearest = std::min(nearest, -s.position.z);
       const float radius = 15 / float(g.camera.fy) * (g.camera.orthographic ? 1 : nearest);
       for (const float ao : obscure(sao_method(), g, radius).ao.pixels) EXPECT_EQ(ao, 1) << tilt;

@@ -52,7 +52,7 @@ std::vector<ExrKind> kinds() {
 }
 
 void check(const Geometry& geometry) {
-  for (const Surfel& surfel : geometry.surfaces.each()) {
+  for (const Surfel& surfel : geometry.surfaces) {
     if (!surfel.is_surface()) continue;
     for (int i = 0; i < 3; ++i) {
       require(std::isfinite(surfel.position[i]), "a surface whose position is not finite");

@@ -122,7 +122,7 @@ float reach_px(float f, bool orthographic, const glm::vec3& point, float radius)
 float reach_px(const Geometry& g, float radius) {
   const auto f = float(std::max(g.camera.fx, g.camera.fy));
   float reach = 0;
-  for (const Surfel& s : g.surfaces.each()) {
+  for (const Surfel& s : g.surfaces) {
     if (!s.is_surface()) continue;
     reach = std::max(reach, reach_px(f, g.camera.orthographic, s.position, radius));
   }

@@ -44,7 +44,7 @@ KeptSurfaces keep_surfaces(const Geometry& geometry) {
   const Surfaces& surfaces = geometry.surfaces;
   KeptSurfaces kept{geometry.camera, geometry.window, geometry.world_known, 0, {}};
   std::uint32_t most = 0;
-  for (const Surfel& s : surfaces.each())
+  for (const Surfel& s : surfaces)
     if (s.is_surface()) most = std::max(most, steps_of(s.rounding));
   const std::uint32_t least = most - std::min(most, 255u);
   kept.least_rounding = least << KeptSurface::kFloatShift;

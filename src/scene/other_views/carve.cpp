@@ -92,7 +92,7 @@ class Carver {
  public:
   Carver(Solids& solids, const Geometry& frame, const std::vector<OtherView>& views)
       : solids_(solids), frame_(frame), views_(views), footprint_(frame.camera) {
-    for (const Surfel& s : frame.surfaces.each())
+    for (const Surfel& s : frame.surfaces)
       if (s.is_usable()) farthest_ = std::max(farthest_, kFarthest * glm::length(s.position));
   }
 

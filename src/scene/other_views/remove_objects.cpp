@@ -153,7 +153,7 @@ class Hole {
   void add(const OtherView& view) {
     const Surfaces seen = view.surfels_in_frame();
     const bool ortho = shown_.camera.orthographic;
-    for (const Surfel& s : seen.each()) {
+    for (const Surfel& s : seen) {
       if (!s.is_usable() || glm::dot(s.normal, direction_to_viewer(s.position, ortho)) <= 0)
         continue;
       const glm::dvec2 at = shown_.camera.project(glm::dvec3(s.position));

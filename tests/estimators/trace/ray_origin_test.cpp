@@ -40,7 +40,7 @@ Closed closed_ways(const Geometry& g) {
   const RayScene rays(build_height_field(g, {}));
   const PixelFootprint footprints(g.camera);
   Closed closed;
-  for (const Surfel& s : g.surfaces.each()) {
+  for (const Surfel& s : g.surfaces) {
     if (!s.is_usable()) continue;
     const glm::vec3 view = direction_to_viewer(s.position, g.camera.orthographic);
     const float footprint = footprints.at(-s.position.z);

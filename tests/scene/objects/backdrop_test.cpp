@@ -267,7 +267,7 @@ TEST(Backdrop, ADomeIsThreeTimesAsLargeAsItsScene) {
   ASSERT_TRUE(found);
   std::vector<double> others;
   const Geometry stage = frame({kStage, kBall});
-  for (const Surfel& s : stage.surfaces.each())
+  for (const Surfel& s : stage.surfaces)
     if (s.is_surface()) others.push_back(glm::length(glm::dvec3(s.position)));
   std::ranges::sort(others);
   const double most = others[others.size() * 9 / 10];

@@ -68,7 +68,7 @@ class Registers : public testing::Test {
     double most = 0;
     const glm::dmat3 to_world = glm::transpose(frame_.camera.rotation);
     const Surfaces seen = view.surfels_in_frame();
-    for (const Surfel& s : seen.each()) {
+    for (const Surfel& s : seen) {
       if (!s.is_surface()) continue;
       const glm::dvec3 p = to_world * glm::dvec3(s.position) + frame_.camera.origin;
       const glm::dvec3 way = p - kEye;

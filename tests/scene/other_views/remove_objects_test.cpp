@@ -159,7 +159,7 @@ TEST(TakeOut, WhatIsSeenAtLengthGoesOn) {
 TEST(TakeOut, BackgroundStaysBackground) {
   const Frame frame = frame_of({});
   const CasterSurfaces casting = remove_objects(frame.geometry, frame.coverage, {}, {});
-  for (const Surfel& s : casting.geometry.surfaces.each()) {
+  for (const Surfel& s : casting.geometry.surfaces) {
     EXPECT_FALSE(s.is_surface());
     EXPECT_FALSE(s.is_broken());
   }
@@ -216,7 +216,7 @@ TEST(TakeOut, WhatNothingTellsIsBroken) {
   const Frame frame = frame_of({kFloor});
   const CasterSurfaces casting =
       remove_objects(frame.geometry, Plane<float>(kWindow.width(), kWindow.height(), 1.0f), {}, {});
-  for (const Surfel& s : casting.geometry.surfaces.each()) EXPECT_TRUE(s.is_broken());
+  for (const Surfel& s : casting.geometry.surfaces) EXPECT_TRUE(s.is_broken());
 }
 
 /// A pixel that is covered in part shows one of both.
