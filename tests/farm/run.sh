@@ -80,18 +80,18 @@ test_slurm() {
   local job killed cancelled cancelled_task drained_at
   job=$(run_example sbatch | grep -o '[0-9]*$')
   killed=$(catch_writer)
+  scontrol update partitionname=all state=down  # tasks are left to start after the drain
   cancelled=$(catch_writer "$killed")
   cancelled_task=${job}_$(variable_of "$cancelled" SLURM_ARRAY_TASK_ID)
   say "slurm: job $job; drain n1, kill task ${job}_$(variable_of "$killed" SLURM_ARRAY_TASK_ID)," \
     "cancel task $cancelled_task"
-  scontrol update partitionname=all state=down  # no starts for 2 s: Slurm tells times in seconds
   scontrol update nodename=n1 state=drain reason=test
   drained_at=$(date +%s)
   kill -KILL "$killed"
   scancel "$cancelled_task"
   wait_until 20 "process $cancelled to end" is_gone "$cancelled"
   [ -z "$(find relit -name ".*-$cancelled-*")" ] || fail "a cancelled task has left a temporary"
-  sleep 2
+  sleep 2  # Slurm tells times in seconds
   scontrol update partitionname=all state=up
   wait_until 120 "job $job to end" job_has_ended "$job"
   check_states "$job"
