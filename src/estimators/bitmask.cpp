@@ -155,6 +155,7 @@ class Bitmask {
     if (has_sources && !asks) gather_sources();
     gather_visibility();
     if (has_sources && asks) gather_sources();
+    past_ = {};
   }
 
   void gather_visibility() {

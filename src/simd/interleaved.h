@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "math/fixed_ratio16.h"
+#include "math/uninitialized.h"
 #include "simd/width.h"
 
 namespace ssdo {
@@ -88,7 +89,9 @@ class InterleavedValues {
  public:
   InterleavedValues() = default;
   explicit InterleavedValues(const auto& layout)
-      : values_(std::make_unique_for_overwrite<T[]>(layout.size())) {}
+      : values_(std::make_unique_for_overwrite<T[]>(layout.size())) {
+    prefer_large_pages(values_.get(), layout.size() * sizeof(T));
+  }
 
   T* data() { return values_.get(); }
   const T* data() const { return values_.get(); }

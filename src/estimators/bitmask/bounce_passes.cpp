@@ -182,7 +182,8 @@ class BouncePasses {
   /// The lamps of `light` that stand in the scene; `lit`: the pixels that send.
   std::vector<LampBeyond> lamps_beyond(const LightGroup& light, const Window& lit) const {
     std::vector<LampBeyond> lamps;
-    if (!is_lit_ || !in_.march.extend || scene_.caster_surfaces) return lamps;
+    const bool extends_lit = is_lit_ && in_.march.extend && !scene_.caster_surfaces;
+    if (!extends_lit || !light.light.has_local_lamps()) return lamps;
     const int width = march_scene_.layout.width(), height = march_scene_.layout.height();
     InterleavedVectors sent = in_.raster.make_color();  // set at the border alone
     for (std::size_t k = 0; k < light.source_indices.size(); ++k) {
