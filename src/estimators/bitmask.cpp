@@ -75,7 +75,8 @@ class Bitmask {
         request_(request),
         progress_(progress),
         march_scene_(make_march_scene(scene.casters(), scene.solids, request.receivers,
-                                      scene.caster_surfaces ? &scene.geometry : nullptr)),
+                                      scene.caster_surfaces ? &scene.geometry : nullptr,
+                                      request.radius)),
         layout_(march_scene_.layout),
         raster_(march_scene_),
         far_(request.around_band && request.around_band->continues_in_overview

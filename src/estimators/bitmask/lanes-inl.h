@@ -120,6 +120,7 @@ HWY_INLINE Shading load_shading(const MarchScene& scene, const Place& place) {
 struct MarchReceiver : Receiver {
   Place place;         ///< of all lanes
   float reach_px = 0;  ///< of all lanes: no pixel farther away in the picture is within the radius
+  V own_reach_px;      ///< the same by lane, of the receivers of marches
   V slope_x, slope_y;  ///< of the pixel's ray, or its x and y where the camera is orthographic
   V3 to_viewer;        ///< unit: V
   V distance;          ///< to the viewer
@@ -160,7 +161,7 @@ HWY_INLINE V bend_to_viewer(V3& normal, const V3& to_viewer) {
 HWY_INLINE MarchReceiver load_receiver(const MarchScene& scene, const Place& place) {
   const auto [i, y, column_phase, column] = place;
   MarchReceiver p;
-  p.place = place;
+  p.place = place, p.own_reach_px = set(0);
   const V depth = load(scene.receiver_depth(), i);
   p.x = lane_columns(scene.layout, column_phase, column), p.y = set(float(y));
   p.valid = holds_solid(depth);
@@ -237,13 +238,20 @@ HWY_INLINE V likeness(const MarchScene& scene, const MarchReceiver& p, std::ptrd
 /// The distance in the picture beyond which no point can be within `radius` of a receiver. A view
 /// ray whose slope differs by e from that of the receiver's ray passes the receiver at a distance
 /// of d e / (l + e), with d the receiver's distance and l the length of its ray per unit of depth.
+HWY_INLINE V own_reach_px(const MarchScene& scene, const MarchReceiver& p, float radius) {
+  const float f = scene.fx > scene.fy ? scene.fx : scene.fy;
+  if (scene.orthographic || radius > kInfiniteLength) return set(radius * f);
+  const V depth = set(0) - p.position.z, r = set(radius);
+  const V slope = r * p.distance / (depth * (depth - r));
+  return set(f) * hn::IfThenElse(depth > r, slope, set(1e30f));
+}
+
+/// The same of all lanes.
 HWY_INLINE float reach_px(const MarchScene& scene, const MarchReceiver& p, float radius) {
   const float f = scene.fx > scene.fy ? scene.fx : scene.fy;
   if (scene.orthographic || radius > kInfiniteLength) return radius * f;
-  const V depth = set(0) - p.position.z, r = set(radius);
-  const V slope = r * p.distance / (depth * (depth - r));
-  const V reach = hn::IfThenElse(depth > r, slope, set(1e30f));
-  return f * hn::GetLane(hn::MaxOfLanes(D(), hn::IfThenElseZero(p.valid, reach)));
+  const V reach = own_reach_px(scene, p, radius);
+  return hn::GetLane(hn::MaxOfLanes(D(), hn::IfThenElseZero(p.valid, reach)));
 }
 
 /// The first sector whose sample point is at a larger angle from V than the direction with cosine
@@ -298,23 +306,6 @@ struct SideFrame {
   VU above_count;  ///< their number, 0..31; the last sector points away from the viewer
   VU open;         ///< the sectors in `above` that the surface itself does not hide
 };
-
-/// The sectors hidden by a solid whose front is at s and at the height `above` over the receiver's
-/// tangent plane, and whose back is `depth` behind that.
-template <bool kOrthographic>
-HWY_INLINE VU sectors_behind(const MarchReceiver& p, const SideFrame& side, V s, V above, V depth,
-                             float radius) {
-  // Centres of sampled pixels do not lie exactly in the slice. They are projected into it parallel
-  // to the receiver's tangent plane, which keeps their heights, so that no plane occludes itself at
-  // any tilt.
-  const SlicePoint front{s, hn::NegMulAdd(s, side.slope, above)};
-  const V distance2 = dot(front, front);
-  const M meets = hn::And(above > set(0), distance2 <= set(radius * radius));
-  const VU from = sector_of(front.v, distance2, side.start),
-           to = sector_of(back_of<kOrthographic>(p, front, depth), side.start);
-  return hn::IfThenElseZero(hn::RebindMask(DU(), meets),
-                            hn::AndNot(bits_from(to), bits_from(from)));
-}
 
 /// The frame of a slice at a receiver: T, the components of both normals along it, and the weight w
 /// of bitmask.cpp, which makes slices that are uniform in the picture uniform around V.

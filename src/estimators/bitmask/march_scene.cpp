@@ -161,7 +161,7 @@ void for_each_cell(const Geometry& g, const MarchScene& scene, const Cells& cell
 }  // namespace
 
 MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Window& receivers,
-                            const Geometry* receiving) {
+                            const Geometry* receiving, float radius) {
   check_layers(solids);
   const Interleaving layout(g.surfaces.width, g.surfaces.height,
                             (g.window.x0 - g.display.x0) & (Interleaving::kPeriod - 1));
@@ -206,7 +206,9 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
     scene.tilt_rest[i] = pack_bf16x2_rest(tilt.x, tilt.y);
     for (int k = 0; k < solids.layers(); ++k) {
       const Span span =
-          cell.is_surface() ? cells.span(cell, solids.at(k, g.surfaces.index(x, y))) : Span();
+          cell.is_surface()
+              ? cells.span(cell, solid_within(g, solids, k, g.surfaces.index(x, y), radius))
+              : Span();
       MarchLayer& layer = scene.layers[std::size_t(k)];
       layer.depth[i] = span.depth, layer.thickness[i] = span.thickness;
     }
@@ -228,7 +230,8 @@ MarchScene make_march_scene(const Geometry& g, const Solids& solids, const Windo
         scene.border.gather([&](int x, int y) { return tangent_normal(scene, x, y)[c]; });
   }
   scene.border_thickness = scene.border.gather([&](int x, int y) {
-    return std::min(solids.at(0, g.surfaces.index(x, y)).thickness, kInfiniteThickness);
+    return std::min(solid_within(g, solids, 0, g.surfaces.index(x, y), radius).thickness,
+                    kInfiniteThickness);
   });
   if (!solids.beyond.empty()) {
     scene.border_beyond = scene.border.gather(

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include "math/bf16x2.h"
@@ -139,8 +140,9 @@ float reach_px(const Geometry& geometry, float radius);
 
 /// `receivers` as Request has them: in the coordinates of the geometry's window, and within it;
 /// area 0: all of it. `receiving`: what receives where that is not `geometry`, whose solids are
-/// given.
+/// given. Solids are as deep as solid_within() has them, for marches within `radius`.
 MarchScene make_march_scene(const Geometry& geometry, const Solids& solids,
-                            const Window& receivers = {}, const Geometry* receiving = nullptr);
+                            const Window& receivers = {}, const Geometry* receiving = nullptr,
+                            float radius = std::numeric_limits<float>::infinity());
 
 }  // namespace ssdo

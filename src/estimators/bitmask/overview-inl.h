@@ -79,7 +79,7 @@ HWY_INLINE MarchReceiver in_overview_pixels(const March& march, MarchReceiver p)
   };
   p.x = place(p.x, scene.first_x, far.first_x), p.y = place(p.y, scene.first_y, far.first_y);
   p.rise_x = p.rise_x * set(kSide), p.rise_y = p.rise_y * set(kSide);
-  p.reach_px /= kSide;
+  p.reach_px /= kSide, p.own_reach_px = p.own_reach_px * set(1 / kSide);
   return p;
 }
 HWY_INLINE SideFrame in_overview_pixels(SideFrame side) {

@@ -18,7 +18,7 @@
 
 #include <algorithm>
 
-#include "estimators/bitmask/lanes-inl.h"
+#include "estimators/bitmask/solid_sectors-inl.h"
 #include "scene/same_surface.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -99,12 +99,19 @@ HWY_INLINE M clip(Piece& piece, float radius) {
 template <bool kOrthographic>
 HWY_INLINE VU sectors_behind_piece(const MarchReceiver& p, const SideFrame& side, Piece piece, V s,
                                    V above, V depth, float radius) {
-  M meets = above > set(0);
-  if (radius < kInfiniteLength) meets = hn::And(meets, clip(piece, radius));
   const SlicePoint middle{s, hn::NegMulAdd(s, side.slope, above)};
-  const VU inner = sector_of(piece.inner, side.start), outer = sector_of(piece.outer, side.start),
-           back = sector_of(back_of<kOrthographic>(p, middle, depth), side.start);
-  const VU from = hn::Min(inner, outer), to = hn::Max(hn::Max(inner, outer), back);
+  const WithinRadius solid = view_ray_within<kOrthographic>(p, side, middle, depth, radius);
+  const M shown = radius < kInfiniteLength ? clip(piece, radius) : solid.exists;
+  const VU inner = sector_of(piece.inner, side.start), outer = sector_of(piece.outer, side.start);
+  VU from = hn::Min(inner, outer), to = hn::Max(hn::Max(inner, outer), solid.to);
+  if (radius < kInfiniteLength) {
+    // Either may be outside: the piece, or the view ray behind its middle.
+    const auto behind = hn::RebindMask(DU(), solid.exists), front = hn::RebindMask(DU(), shown);
+    from =
+        hn::IfThenElse(behind, hn::IfThenElse(front, hn::Min(from, solid.from), solid.from), from);
+    to = hn::IfThenElse(behind, hn::IfThenElse(front, to, solid.to), hn::Max(inner, outer));
+  }
+  const M meets = hn::And(above > set(0), hn::Or(shown, solid.exists));
   return hn::IfThenElseZero(hn::RebindMask(DU(), meets),
                             hn::AndNot(bits_from(to), bits_from(from)));
 }

@@ -72,6 +72,12 @@ HWY_INLINE VU march_steps(const March& march, const MarchReceiver& p, const Side
                     ? sectors_behind<kOrthographic>(p, side, s, above, thickness, march.radius)
                     : sectors_behind_piece<kOrthographic>(p, side, piece(), s, above, thickness,
                                                           march.radius);
+      // The solids of a slice stand a little aside of those of the frame: what is out of the reach
+      // of a lane would count where the other lanes march on.
+      if (march.radius < kInfiniteLength) {
+        const M within_reach = set(step.inner_px) <= p.own_reach_px;
+        bits = hn::IfThenElseZero(hn::RebindMask(DU(), within_reach), bits);
+      }
       if (march.may_be_thin && layer == 0 && before.step) {
         bits = hn::Or(bits, sectors_between<kOrthographic>(march, planes, p, side, before,
                                                            {&step, i, depth}, above > set(0)));
@@ -172,6 +178,7 @@ HWY_INLINE void for_each_receiver(const March& march, const Window& part, const 
     if (slices.empty()) return;
     MarchReceiver p = load_receiver(march.scene, place);
     p.reach_px = reach_px(march.scene, p, march.radius);
+    p.own_reach_px = own_reach_px(march.scene, p, march.radius);
     work(p, slices);
   });
 }

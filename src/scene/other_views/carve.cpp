@@ -25,7 +25,9 @@ namespace ssdo {
 namespace {
 
 /// Each point is kGrowth times as far away as the one before; the first is kFirst footprints away.
-constexpr float kGrowth = 2, kFirst = 2;
+/// The room between an object and what is behind it is often less deep than the object: steps that
+/// double the distance would pass over it.
+constexpr float kGrowth = 1.25f, kFirst = 2;
 
 /// Guesses are not tested beyond this many times the distance to the farthest surface.
 constexpr float kFarthest = 4;

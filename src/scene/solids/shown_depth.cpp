@@ -81,14 +81,15 @@ class Section {
         first_(end(0, -across_)),
         last_(end(run.pixels - 1, across_)) {}
 
-  float depth() const {
+  MeanDepth depth() const {
     const glm::vec3 chord = (last_.position - first_.position) / px_;
     const float width = glm::dot(chord, across_);
     // Not-a-number where both ends are at one position.
-    if (!(width > 0) || !(parallel() > 0)) return kInfinity;
+    if (!(width > 0)) return {};
+    const float per_width = px_ / width, shown = per_width * kRoundThing * twice_area(chord);
+    if (run_.lines == 0 || !(parallel() > 0)) return {kInfinity, shown};
     const float side = std::min(unseen(first_, -chord), unseen(last_, chord)) / parallel();
-    if (!(side < kInfinity)) return kInfinity;
-    return px_ * (kRoundThing * twice_area(chord) + side * glm::length(chord)) / width;
+    return {shown + per_width * side * glm::length(chord), shown};
   }
 
  private:
@@ -110,10 +111,8 @@ class Section {
   End end(int i, const glm::vec3& outward) const {
     const Surfel& s = at(i);
     const glm::vec3 view = to_viewer(s.position);
-    const float px = pixel_at(s.position),
-                facing = std::max(glm::dot(s.normal, view), kLeastCosine),
-                nearer = -glm::dot(outward, s.normal) / facing;
-    return {s.position + 0.5f * px * (outward + nearer * view), px, at(i == 0 ? -1 : run_.pixels),
+    const float px = pixel_at(s.position);
+    return {silhouette_beside(s, outward, view, px), px, at(i == 0 ? -1 : run_.pixels),
             i == 0 ? run_.first_edge : run_.last_edge};
   }
 
@@ -165,8 +164,15 @@ class Section {
 
 }  // namespace
 
-float shown_depth(const Geometry& geometry, const WholeRun& run) {
-  return run.pixels > 1 && run.lines > 0 ? Section(geometry, run).depth() : kInfinity;
+glm::vec3 silhouette_beside(const Surfel& pixel, const glm::vec3& outward,
+                            const glm::vec3& to_viewer, float px) {
+  const float facing = std::max(glm::dot(pixel.normal, to_viewer), kLeastCosine),
+              nearer = -glm::dot(outward, pixel.normal) / facing;
+  return pixel.position + 0.5f * px * (outward + nearer * to_viewer);
+}
+
+MeanDepth shown_depth(const Geometry& geometry, const WholeRun& run) {
+  return run.pixels > 1 ? Section(geometry, run).depth() : MeanDepth{};
 }
 
 float least_depth(const Geometry& geometry, std::size_t pixel) {

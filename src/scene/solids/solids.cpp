@@ -17,8 +17,9 @@
 //   kWidthReach to each side. Runs that are seen whole give the width of those that are not.
 //
 //   The sides of an object may tell more (scene/solids/shown_depth.h): a board whose side should be
-//   seen, but is not, is thin, and a box is as deep as its side is long. No surface is so thin that
-//   it is open between a pixel and the next.
+//   seen, but is not, is thin, and a box is as deep as its side is long. Across a run, the depth
+//   follows the shape of the object (depth_across.cpp). No surface is so thin that it is open
+//   between a pixel and the next.
 //
 // - Surfaces go on as a second layer. Where a run ends and something farther begins, the farther
 //   surface continues behind the run as its tangent plane. Each pixel takes the surface that
@@ -32,25 +33,22 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "math/infinity.h"
 #include "math/pixel_grid.h"
-#include "math/whole_division.h"
 #include "parallel/planes.h"
 #include "parallel/tiles.h"
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
 #include "scene/solids/connections.h"
+#include "scene/solids/depth_across.h"
 #include "scene/solids/shown_depth.h"
 #include "scene/solids/width_of_run.h"
 
 namespace ssdo {
 namespace {
-
-/// A pixel and the overview pixel that stands for it show the same object where their depths differ
-/// by less than this share.
-constexpr float kSameDepth = 0.1f;
 
 /// Factor on the width of a run of which only one end is seen. Mean over four scenes of Cycles:
 /// with 1.5, 3 and 6 the RMSE of ao is 0.072, 0.071 and 0.073 at a small radius and 0.134, 0.136
@@ -81,7 +79,8 @@ struct Run {
   std::size_t first = 0;  ///< pixel
   int pixels = 0;         ///< so far
   Meets meets_before = Meets::border;
-  float depth = kInfinity;  ///< guessed, of what the run shows
+  float depth = kInfinity;            ///< guessed, of what the run shows, in the mean
+  std::optional<DepthAcross> across;  ///< by pixel; empty: `depth` in all
 
   // The surface that continues behind the run, from where the walk entered it.
   int sender = -1;  ///< pixel that shows it; -1: none does
@@ -188,8 +187,11 @@ class GuessAlongLines {
     if (is_last) {
       enter(run, pixel, x + direction_.dx, y + direction_.dy, true);
       run.depth = depth_beside(pixel);
+      run.across = depth_across(pixel, run.depth);
     }
-    const float depth = run.depth == kUnknown ? depth_in_overview(x, y) : run.depth;
+    const float depth = run.across              ? run.across->at(place_in_run(pixel))
+                        : run.depth == kUnknown ? depth_in_overview(*overview_, geometry_, x, y)
+                                                : run.depth;
     float& least = out_.thickness[pixel];
     if (depth < kInfinity) least = std::min(least, depth);
     continue_behind(run, pixel);
@@ -219,7 +221,9 @@ class GuessAlongLines {
       run.last_edge += float(side) * geometry_.surfaces[last].position;
     };
     add_edges(-1), add_edges(1);
-    own.depth = std::min(own.depth, shown_depth(geometry_, run));
+    const MeanDepth found = shown_depth(geometry_, run);
+    own.depth = std::min(own.depth, found.most);
+    own.shown = found.shown;
   }
 
   /// The harmonic mean of the depths of a pixel's run and those beside it: some may be infinite.
@@ -242,6 +246,19 @@ class GuessAlongLines {
       }
     }
     return weights / sum;
+  }
+
+  /// How the mean depth of a run changes across it; empty where it is not seen whole: then what is
+  /// hidden of it is not known.
+  std::optional<DepthAcross> depth_across(std::size_t pixel, float mean) const {
+    const auto start = std::size_t(starts_[pixel]);
+    const WidthOfRun& own = widths_[start];
+    if (!own.is_whole || own.pixels < 2 || !(mean < kInfinity)) return {};
+    return DepthAcross(geometry_, {start, stride(), own.pixels, step_px_}, {mean, own.shown});
+  }
+
+  int place_in_run(std::size_t pixel) const {
+    return int((std::ptrdiff_t(pixel) - std::ptrdiff_t(starts_[pixel])) / stride());
   }
 
   Pixel middle_of_run(int start) const {
@@ -279,21 +296,6 @@ class GuessAlongLines {
                  : geometry_.window.y1 < geometry_.part_of->y1;
   }
 
-  /// What the overview guesses of the thing that a pixel shows; infinite where it shows another.
-  float depth_in_overview(int x, int y) const {
-    const Geometry& small = overview_->geometry;
-    const auto block = [](int pixel, int first, int first_small, int size) {
-      return std::clamp(floor_divide(pixel - first, kOverviewStride) - first_small, 0, size - 1);
-    };
-    const Window &window = geometry_.window, &display = geometry_.display;
-    const int column = block(window.x0 + x, display.x0, small.window.x0, small.surfaces.width),
-              row = block(window.y0 + y, display.y0, small.window.y0, small.surfaces.height);
-    const Surfel &here = geometry_.surfaces(x, y), &there = small.surfaces(column, row);
-    const bool same = there.is_surface() && std::abs(here.position.z - there.position.z) <=
-                                                kSameDepth * std::abs(here.position.z);
-    return same ? overview_->thickness(column, row) : kInfinity;
-  }
-
   /// Whether the normal of a pixel was rebuilt from P across the step to another surface. Where a
   /// surface is seen through a slit one pixel wide, its tangent plane is not known.
   bool leans_on_an_edge(int x, int y) const {
@@ -327,7 +329,7 @@ class GuessAlongLines {
   }
 
   WidthOfRun width_of(const Run& run, std::size_t last_pixel, Meets after) const {
-    WidthOfRun out{kInfinity, run.pixels, false};
+    WidthOfRun out{kInfinity, run.pixels};
     if (run.meets_before == Meets::cut || after == Meets::cut) {
       out.depth = kUnknown;
       return out;

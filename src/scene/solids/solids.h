@@ -90,6 +90,12 @@ struct Solids {
     return !end.empty() && end[pixel] == Provenance::measured;
   }
 
+  /// Whether it is a guess how deep the solid of a layer is.
+  bool depth_is_guessed(int layer, std::size_t pixel) const {
+    if (layer > 0) return provenance(layer, pixel) == Provenance::guessed;
+    return end.empty() || end[pixel] == Provenance::guessed;
+  }
+
   /// The solid of a layer at a pixel that shows a surface.
   Solid at(int layer, std::size_t pixel) const {
     if (layer > 0) {
@@ -110,6 +116,15 @@ struct Solids {
   /// Gives every layer thicknesses of its own, which do not change with those of its senders.
   void separate_thicknesses();
 };
+
+/// The solid of a layer at a pixel, for occlusion within `radius`. A depth that is guessed is
+/// limited by the radius, or else solids of unknown depth, which are endless, and rooms, which are
+/// taken to be as deep as they are wide, would darken everything that is seen beside their edges.
+/// It is not less than least_depth(). RMSE of ao at a small radius in the closed room of the truth
+/// scenes is 0.057 without the limit and 0.032 with it; over 285 frames of made scenes 0.0760, and
+/// 0.0753 with 1.5 radii: no figure is better for all scenes.
+Solid solid_within(const Geometry& geometry, const Solids& solids, int layer, std::size_t pixel,
+                   float radius);
 
 /// Whether solids may be thinner than the distance of neighbours on a surface, as guessed ones
 /// seldom are.
@@ -132,6 +147,10 @@ struct SolidsOfOverview {
   const Geometry& geometry;
   const Plane<float>& thickness;
 };
+
+/// What the overview guesses of the thing that a pixel of `geometry`, some rows of the same frame,
+/// shows; infinite where the overview shows another thing there.
+float depth_in_overview(const SolidsOfOverview& overview, const Geometry& geometry, int x, int y);
 
 /// Guesses from a frame alone how thick objects are, and a second layer; see solids.cpp. If the
 /// geometry is some rows of a frame, an overview completes the objects that these rows cut.

@@ -27,6 +27,7 @@ struct WidthOfRun {
   float depth = std::numeric_limits<float>::infinity();  ///< infinite: no end is seen; or kUnknown
   int pixels = 0;
   bool is_whole = false;  ///< both ends are seen
+  float shown = 0;        ///< the part of `depth` that the sides in view show, of a whole run
 };
 
 /// Runs across one thing differ in length by about one pixel; from this difference on, two runs

@@ -61,6 +61,24 @@ TEST(BitmaskSolids, ASphereHidesItsFormFactor) {
               off_axis(tilted(camera_from_fov(40, kWindow, 1), 30, 9), kWindow, {-0.7, 0.7}));
 }
 
+/// Of a ball above the ground, often only the underside is within the radius, which no pixel shows.
+TEST(BitmaskSolids, ASphereHidesWithWhatIsWithinTheRadius) {
+  const Ball ball{{0, 0.45, 0.5}, 0.4};
+  for (const float radius : {0.4f, 0.55f, 0.8f}) {
+    const auto by_rays = [&](const glm::dvec3& p) {
+      return ao_by_rays(ball.scene(), {p, {0, 0, 1}}, double(radius), 4096);
+    };
+    for (const bool orthographic : {false, true}) {
+      const Camera camera = orthographic ? tilted(camera_from_ortho_width(2.4, kWindow, 1), 30)
+                                         : tilted(camera_from_fov(30, kWindow, 1), 30, 4.5);
+      expect_closed_form(
+          fmt::format("sphere, radius {:g}{}", radius, orthographic ? ", ortho" : ""), ball.scene(),
+          camera, {.radius = radius}, by_rays,
+          [&](const Geometry& g, const Camera& c) { return ball.solids(g, c); });
+    }
+  }
+}
+
 /// A wall seen over its top from behind: as far as it is thin, only what is between the pixels that
 /// show it closes it, however many steps there are.
 TEST(BitmaskSolids, AThinWallIsClosedBetweenThePixelsThatShowIt) {

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <numbers>
+#include <utility>
 
 #include "scene/normals/normals.h"
 #include "scene/pixel_footprint.h"
@@ -23,7 +24,8 @@ namespace ssdo::test {
 struct PlainRun {
   glm::ivec2 first{0}, last{0};
   int unknown_ends = 0;
-  float depth = INFINITY;
+  float depth = INFINITY;  ///< in the mean over its pixels
+  double shown = 0;        ///< the part of it that the sides in view show, of a whole run
 
   int pixels() const {
     return 1 + std::max(std::abs(last.x - first.x), std::abs(last.y - first.y));
@@ -46,8 +48,11 @@ class PlainGuess {
     for (std::size_t k = 0; k < kDirections.size(); ++k)
       for (int y = 0; y < g.surfaces.height; ++y)
         for (int x = 0; x < g.surfaces.width; ++x)
-          if (at({x, y}) && as_wide[k](x, y).unknown_ends == 0)
-            runs_[k](x, y).depth = std::min(runs_[k](x, y).depth, shown_depth({x, y}, k));
+          if (at({x, y}) && as_wide[k](x, y).unknown_ends == 0) {
+            const auto [most, shown] = shown_depth({x, y}, k);
+            runs_[k](x, y).depth = std::min(runs_[k](x, y).depth, most);
+            runs_[k](x, y).shown = shown;
+          }
   }
 
   static glm::ivec2 step(std::size_t k) { return {kDirections[k].dx, kDirections[k].dy}; }
@@ -78,7 +83,8 @@ class PlainGuess {
 
   float thickness(const glm::ivec2& p) const {
     float least = INFINITY;
-    for (std::size_t k = 0; k < kDirections.size(); ++k) least = std::min(least, mean_depth(p, k));
+    for (std::size_t k = 0; k < kDirections.size(); ++k)
+      least = std::min(least, depth_across(p, k, mean_depth(p, k)));
     if (std::isinf(least)) return least;
     const double cosine = dot(normal(p), to_viewer(position(p)));
     return std::max(least, float(pixel(position(p)) * std::min(4.0, std::tan(std::acos(cosine)))));
@@ -142,42 +148,77 @@ class PlainGuess {
     return glm::dot(end - position(beyond), glm::normalize(back));
   }
 
-  /// Of a whole run: twice the area under it over its width, and half a pixel of a side.
-  float shown_depth(const glm::ivec2& p, std::size_t k) const {
+  using Ends = std::array<glm::dvec3, 2>;
+
+  glm::dvec3 across_view(const PlainRun& own) const {
+    const glm::dvec3 view = to_viewer(0.5 * (position(own.first) + position(own.last))),
+                     way = position(own.last) - position(own.first);
+    return glm::normalize(way - glm::dot(way, view) * view);
+  }
+
+  /// The silhouettes of a whole run, on the tangent planes of its ends.
+  Ends silhouettes(const PlainRun& own, std::size_t k) const {
+    const glm::ivec2 pixels[2] = {own.first, own.last};
+    const glm::dvec3 across = across_view(own);
+    Ends ends;
+    for (const int e : {0, 1}) {
+      const glm::dvec3 at_end = position(pixels[e]), n = normal(pixels[e]), v = to_viewer(at_end);
+      const double aside = (e ? 0.5 : -0.5) * double(step_px(k)) * pixel(at_end);
+      ends[std::size_t(e)] = at_end + aside * across -
+                             aside * glm::dot(across, n) / std::max(glm::dot(n, v), 0.05) * v;
+    }
+    return ends;
+  }
+
+  /// How far behind `p` its view ray comes nearest to the line between the silhouettes.
+  double to_chord(const glm::dvec3& p, const Ends& ends) const {
+    const glm::dvec3 line = glm::normalize(ends[1] - ends[0]), ray = -to_viewer(p),
+                     between = p - ends[0];
+    const double cosine = glm::dot(line, ray);
+    return (cosine * glm::dot(line, between) - glm::dot(ray, between)) / (1 - cosine * cosine);
+  }
+
+  /// The way from `p` on its view ray to the side that ends at a silhouette, at a right angle to
+  /// the face with normal `n` in the section of the chord and the view ray.
+  double to_side(const glm::dvec3& p, const glm::dvec3& n, const glm::dvec3& end,
+                 const glm::dvec3& out) const {
+    const glm::dvec3 ray = -to_viewer(p), section = glm::normalize(glm::cross(out, ray));
+    glm::dvec3 m = glm::normalize(glm::cross(section, n));
+    if (glm::dot(m, out) < 0) m = -m;
+    const double heads = glm::dot(ray, m);
+    return heads > 0 ? std::max(glm::dot(end - p, m), 0.0) / heads : INFINITY;
+  }
+
+  /// The depth at a pixel of a run whose mean depth is `mean`: the shown half, turned about the
+  /// middle, and hidden sides at right angles.
+  float depth_across(const glm::ivec2& p, std::size_t k, float mean) const {
     const PlainRun& own = run(p, k);
+    if (own.unknown_ends != 0 || own.pixels() == 1 || std::isinf(mean)) return mean;
+    const Ends ends = silhouettes(own, k);
+    const glm::ivec2 counterpart = own.first + own.last - p;
+    const glm::dvec3 chord = ends[1] - ends[0];
+    const double turned = to_chord(position(p), ends) + to_chord(position(counterpart), ends),
+                 hidden = std::min(to_side(position(p), normal(own.first), ends[0], -chord),
+                                   to_side(position(p), normal(own.last), ends[1], chord)),
+                 most = double(mean);
+    return float(std::max(turned, 0.0) * (own.shown > most ? most / own.shown : 1) +
+                 std::min(std::max(most - own.shown, 0.0), hidden));
+  }
+
+  /// Of a whole run: twice the area under it over its width, and half a pixel of a side; and the
+  /// first of these alone.
+  std::pair<float, double> shown_depth(const glm::ivec2& p, std::size_t k) const {
+    const PlainRun& own = run(p, k);
+    if (own.pixels() == 1) return {INFINITY, 0};
     glm::dvec3 edges[2] = {};
     int lines = 0;
     PlainRun farthest[2] = {own, own};
     for_each_beside(p, k, kWidthReach, [&](int side, int, const PlainRun& beside, double) {
       farthest[side > 0] = beside, ++lines;
     });
-    if (lines == 0 || own.pixels() == 1) return INFINITY;
-    edges[0] = position(farthest[1].first) - position(farthest[0].first);
-    edges[1] = position(farthest[1].last) - position(farthest[0].last);
-    const double cosine = std::abs(glm::dot(glm::normalize(edges[0]), glm::normalize(edges[1]))),
-                 parallel = std::clamp((cosine - 0.9) / 0.06, 0.0, 1.0);
     const glm::ivec2 pixels[2] = {own.first, own.last};
-    const glm::dvec3 middle = 0.5 * (position(own.first) + position(own.last)),
-                     view = to_viewer(middle), way = position(own.last) - position(own.first),
-                     across = glm::normalize(way - glm::dot(way, view) * view);
-    glm::dvec3 ends[2];
-    for (const int e : {0, 1}) {
-      const glm::dvec3 at_end = position(pixels[e]), n = normal(pixels[e]), v = to_viewer(at_end);
-      const double aside = (e ? 0.5 : -0.5) * double(step_px(k)) * pixel(at_end);
-      // On the tangent plane.
-      ends[e] = at_end + aside * across -
-                aside * glm::dot(across, n) / std::max(glm::dot(n, v), 0.05) * v;
-    }
-    double side = INFINITY;
-    for (const int e : {0, 1}) {
-      const glm::dvec3 out = glm::normalize(ends[e] - ends[1 - e]), edge = glm::normalize(edges[e]),
-                       m = glm::normalize(out - glm::dot(out, edge) * edge), v = to_viewer(ends[e]);
-      const double seen = glm::dot(m, v) - std::abs(glm::dot(edge, v)) / lines;
-      if (seen <= 0) continue;
-      const double half = 0.5 * double(step_px(k)) * pixel(position(pixels[e])) / seen,
-                   behind = room(pixels[e] + (e ? 1 : -1) * step(k), ends[e], out);
-      if (half < behind) side = std::min(side, half / std::min(1.0, 2 - 2 * half / behind));
-    }
+    const glm::dvec3 view = to_viewer(0.5 * (position(own.first) + position(own.last)));
+    const Ends ends = silhouettes(own, k);
     // Trapezoids over the chord.
     const glm::dvec3 chord = ends[1] - ends[0], along = glm::normalize(chord),
                      up = glm::normalize(view - glm::dot(view, along) * along);
@@ -188,9 +229,26 @@ class PlainGuess {
     };
     for (glm::ivec2 at = own.first; at != own.last + step(k); at += step(k)) go_to(position(at));
     go_to(ends[1]);
-    const double round = double(kDepthOfWidth) * 4 / std::numbers::pi;
-    return float((round * std::max(twice_area, 0.0) + side / parallel * glm::length(chord)) /
-                 glm::dot(chord, across));
+    const double width = glm::dot(chord, across_view(own)),
+                 round = double(kDepthOfWidth) * 4 / std::numbers::pi,
+                 shown = round * std::max(twice_area, 0.0) / width;
+    if (lines == 0) return {INFINITY, shown};
+    edges[0] = position(farthest[1].first) - position(farthest[0].first);
+    edges[1] = position(farthest[1].last) - position(farthest[0].last);
+    const double cosine = std::abs(glm::dot(glm::normalize(edges[0]), glm::normalize(edges[1]))),
+                 parallel = std::clamp((cosine - 0.9) / 0.06, 0.0, 1.0);
+    double side = INFINITY;
+    for (const int e : {0, 1}) {
+      const glm::dvec3 end = ends[std::size_t(e)], out = glm::normalize(e ? chord : -chord),
+                       edge = glm::normalize(edges[e]),
+                       m = glm::normalize(out - glm::dot(out, edge) * edge), v = to_viewer(end);
+      const double seen = glm::dot(m, v) - std::abs(glm::dot(edge, v)) / lines;
+      if (seen <= 0) continue;
+      const double half = 0.5 * double(step_px(k)) * pixel(position(pixels[e])) / seen,
+                   behind = room(pixels[e] + (e ? 1 : -1) * step(k), end, out);
+      if (half < behind) side = std::min(side, half / std::min(1.0, 2 - 2 * half / behind));
+    }
+    return {float(shown + side / parallel * glm::length(chord) / width), shown};
   }
 
   const Geometry& g_;

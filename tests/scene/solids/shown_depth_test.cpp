@@ -37,6 +37,53 @@ double pixel_of(const Camera& camera) {
 
 Surface wall(double z) { return plane({0, 0, z}, {0, 0, 1}); }
 
+/// The point that a pixel shows, and the direction of its view ray, in the world.
+struct Seen {
+  glm::dvec3 point, along;
+};
+Seen seen_at(const Geometry& g, std::size_t i) {
+  const glm::dmat3 to_world(glm::transpose(g.camera.rotation));
+  const glm::dvec3 p(g.surfaces[i].position);
+  return {to_world * p + g.camera.origin,
+          to_world * (g.camera.orthographic ? glm::dvec3(0, 0, -1) : glm::normalize(p))};
+}
+
+/// How far the view ray of a pixel runs through a box that it enters at `from`.
+double depth_of(const Box& box, const Seen& from) {
+  double leaves = INFINITY;
+  for (int c = 0; c < 3; ++c) {
+    if (from.along[c] == 0) continue;
+    const double side = from.along[c] > 0 ? box.high[c] : box.low[c];
+    leaves = std::min(leaves, (side - from.point[c]) / from.along[c]);
+  }
+  return leaves;
+}
+
+/// Depths that were guessed, and those of the thing.
+struct Depths {
+  double found = 0, truth = 0;  ///< means
+  double off = 0, spread = 0;   ///< root mean squares: found less truth; truth less its mean
+};
+template <class Truth>
+Depths compare_depths(const Geometry& g, const Truth& truth) {
+  const Solids solids = guess_solids(g);
+  Depths all;
+  std::vector<double> of_pixels;
+  for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
+    if (!g.is_surface(i)) continue;
+    const double depth = truth(seen_at(g, i));
+    if (depth <= 0) continue;
+    of_pixels.push_back(depth);
+    const double found = double(solids.thickness[i]);
+    all.found += found, all.truth += depth, all.off += (found - depth) * (found - depth);
+  }
+  const auto count = double(of_pixels.size());
+  all.found /= count, all.truth /= count, all.off = std::sqrt(all.off / count);
+  for (const double depth : of_pixels) all.spread += (depth - all.truth) * (depth - all.truth);
+  all.spread = std::sqrt(all.spread / count);
+  return all;
+}
+
 /// The median thickness of the pixels of a thing with |y| < `reach`, which lies in z > -1.
 float thickness_of(const Geometry& g, double reach) {
   const Solids solids = guess_solids(g);
@@ -73,21 +120,40 @@ TEST(ShownDepth, OfABoardWhoseSideIsNotSeenIsSmall) {
   }
 }
 
+/// A view ray leaves a box at once at a silhouette: one depth for all pixels would be off by their
+/// spread.
 TEST(ShownDepth, OfABoxThatShowsASideIsThatOfItsSection) {
   for (const double half_z : {0.05, 0.1, 0.15}) {
     for (const double azimuth : {45.0, 60.0}) {
-      const double a = azimuth * std::numbers::pi / 180, x = 0.4, z = half_z,
-                   width = 2 * (x * std::cos(a) + z * std::sin(a)), mean = 4 * x * z / width;
+      const Box box = post(0.4, half_z);
       const Camera camera = view(azimuth, 0, true);
-      const float found = thickness_of(post(x, z).surface(), camera);
-      // At a right angle to the diagonal there may be more.
-      const double seen = std::sin(a - std::atan2(z, x)),
+      const Geometry g = geometry_of(all_of({wall(-3), box.surface()}), camera, kWindow);
+      const Depths d = compare_depths(g, [&](const Seen& from) {
+        return from.point.z > -1 && std::abs(from.point.y) < 0.2 ? depth_of(box, from) : 0.0;
+      });
+      fmt::print("{} deep, at {} degrees: {:.3f} for {:.3f}, off by {:.3f}, spread {:.3f}\n",
+                 2 * half_z, azimuth, d.found, d.truth, d.off, d.spread);
+      // At a right angle to the diagonal there may be half a pixel more.
+      const double seen = std::sin(azimuth * std::numbers::pi / 180 - std::atan2(half_z, 0.4)),
                    unseen = pixel_of(camera) / (2 * seen * std::sqrt(1 - seen * seen));
-      fmt::print("{} deep, at {} degrees: {:.3f}, {:.3f} in the mean\n", 2 * z, azimuth, found,
-                 mean);
-      EXPECT_GT(found, mean);
-      EXPECT_NEAR(found, kDepthOfWidth * 4 / std::numbers::pi * mean + unseen, 0.08 * mean);
+      EXPECT_NEAR(d.found, d.truth, 0.08 * d.truth + unseen);
+      EXPECT_LT(d.off, std::max(0.35 * d.spread, 1.1 * unseen));
     }
+  }
+}
+
+TEST(ShownDepth, OfABallIsThatOfTheBall) {
+  for (const bool orthographic : {false, true}) {
+    const double radius = 0.4;
+    const Geometry g =
+        geometry_of(all_of({wall(-3), sphere({}, radius)}), view(35, 20, orthographic), kWindow);
+    const Depths d = compare_depths(g, [&](const Seen& from) {
+      return from.point.z > -1 ? -2 * glm::dot(from.point, from.along) : 0.0;
+    });
+    fmt::print("{:.3f} for {:.3f}, off by {:.3f}, spread {:.3f}\n", d.found, d.truth, d.off,
+               d.spread);
+    EXPECT_NEAR(d.found, d.truth, 0.1 * d.truth);
+    EXPECT_LT(d.off, 0.35 * d.spread);
   }
 }
 
@@ -97,7 +163,7 @@ TEST(ShownDepth, IsNotKnownOfWhatIsSeenFaceOnOrRound) {
     return guess_solids(g).thickness[g.surfaces.index(80, 60)];
   };
   EXPECT_NEAR(in_the_middle(post(0.4, 0.3).surface(), view(0, 0)), kDepthOfWidth * 0.8, 0.03);
-  EXPECT_NEAR(in_the_middle(sphere({}, 0.4), view(35, 20)), kDepthOfWidth * 0.8, 0.04);
+  EXPECT_NEAR(in_the_middle(sphere({}, 0.4), view(35, 20)), 0.8, 0.04);
 }
 
 /// From above, lines across the upper corners of a cube enter it by one side and leave it by the
@@ -109,11 +175,11 @@ TEST(ShownDepth, IsNotToldByLinesAcrossACorner) {
   const Solids solids = guess_solids(g);
   int top = 0, thin = 0;
   for (std::size_t i = 0; i < g.surfaces.size(); ++i) {
-    const glm::dvec3 p =
-        glm::transpose(g.camera.rotation) * glm::dvec3(g.surfaces[i].position) + g.camera.origin;
+    const Seen from = seen_at(g, i);
+    const glm::dvec3& p = from.point;
     if (!g.is_surface(i) || std::abs(p.y) > 1e-4 || std::abs(p.x) > 0.25 || std::abs(p.z) > 0.25)
       continue;
-    ++top, thin += solids.thickness[i] < 0.3;
+    ++top, thin += double(solids.thickness[i]) < 0.5 * depth_of(cube, from);
   }
   EXPECT_GT(top, 200);
   fmt::print("{} of {} pixels are thin\n", thin, top);

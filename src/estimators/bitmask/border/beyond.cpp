@@ -69,8 +69,9 @@ void add_enclosure(const MarchScene& scene, const Window& display, const glm::ve
 }
 
 void add_enclosure(const Scene& band, const Request& request, Enclosure& sum) {
-  const MarchScene scene = make_march_scene(band.casters(), band.solids, request.receivers,
-                                            band.caster_surfaces ? &band.geometry : nullptr);
+  const MarchScene scene =
+      make_march_scene(band.casters(), band.solids, request.receivers,
+                       band.caster_surfaces ? &band.geometry : nullptr, request.radius);
   add_enclosure(scene, band.geometry.display, up_in_camera(band), request.radius, scene.receivers,
                 sum);
 }

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-#include "estimators/bitmask/lanes-inl.h"
+#include "estimators/bitmask/solid_sectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
@@ -105,7 +105,8 @@ struct Extension {
   V above;                ///< height of the start over the receiver's tangent plane
   V distance2;            ///< to the border
   V depth;                ///< from front to back at the border
-  M exists;
+  M in_reach;             ///< whether the border is in reach of the lane
+  M exists;               ///< whether the start is within the radius
 };
 
 /// Extends the surface at the border along its tangent plane, within the radius.
@@ -122,8 +123,9 @@ HWY_INLINE Extension extend(const March& march, const MarchReceiver& p, const Si
   e.start = {s, hn::NegMulAdd(s, side.slope, e.above)};
   e.distance2 = dot(e.start, e.start);
   const V radius2 = set(march.radius * march.radius);
-  e.exists = hn::And(e.distance2 < radius2, border.distance_px <= set(p.reach_px));
-  if (!any(e.exists)) return e;
+  e.in_reach = border.distance_px <= p.own_reach_px;
+  e.exists = hn::And(e.distance2 < radius2, e.in_reach);
+  if (!any(e.in_reach)) return e;
 
   // The line where the tangent plane intersects the slice, pointing away from the frame.
   const V3 m{border(scene.border_normal[0]), border(scene.border_normal[1]),
@@ -157,7 +159,7 @@ HWY_INLINE VU extend_side(const March& march, const MarchReceiver& p, const Side
                           const Border& border) {
   const DU du;
   const Extension e = extend<kOrthographic>(march, p, side, border);
-  if (!any(e.exists)) return set_bits(0);
+  if (!any(e.in_reach)) return set_bits(0);
   const VU here = sector_of(e.start.v, e.distance2, side.start);
   const VU leans_across = hn::VecFromMask(du, hn::RebindMask(du, e.end.s < set(0)));
   const VU there = hn::AndNot(leans_across, sector_of(e.end, side.start));
@@ -165,8 +167,9 @@ HWY_INLINE VU extend_side(const March& march, const MarchReceiver& p, const Side
       hn::RebindMask(du, e.exists),
       hn::AndNot(bits_from(hn::Max(here, there)), bits_from(hn::Min(here, there))));
   // The pixel at the border is sampled as well: the last step of the march may be far from it.
-  return hn::Or(beyond,
-                sectors_behind<kOrthographic>(p, side, e.start.s, e.above, e.depth, march.radius));
+  const VU at_border =
+      sectors_behind<kOrthographic>(p, side, e.start.s, e.above, e.depth, march.radius);
+  return hn::Or(beyond, hn::IfThenElseZero(hn::RebindMask(du, e.in_reach), at_border));
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

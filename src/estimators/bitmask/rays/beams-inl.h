@@ -177,9 +177,10 @@ class Beams {
              first_row = hn::ShiftLeft<1>(all_rows -
                                           (all_rows >> (size - set_int(DepthBounds::kSmallest))));
     const V last = hn::ConvertTo(d, (set_int(1) << size) - set_int(1));
-    // A linear function is least at one of the two t and largest at the other.
+    // A linear function is least at one of the two t and largest at the other. Solids end half a
+    // pixel beyond the middle of theirs.
     const V least = above_.least + hn::Min(t * rising_.least, to * rising_.least),
-            most = above_.most + hn::Max(t * rising_.most, to * rising_.most);
+            most = above_.most + hn::Max(t * rising_.most, (to + half) * rising_.most);
     for (const VI row : rows) {
       const V top = hn::ConvertTo(d, (row << size) - first_y), y0 = hn::Max(y.least, top),
               y1 = hn::Min(y.most, top + last), middle_y = half * (y0 + y1),

@@ -21,7 +21,7 @@ const OverviewScene* overview_blockers_of(std::size_t source, const Request& req
 LinkedOccluders::LinkedOccluders(const Scene& blockers, const Scene& scene, const Request& request,
                                  const SlicePattern& pattern, const OverviewScene* far)
     : scene_(make_march_scene(blockers.casters(), blockers.solids, request.receivers,
-                              &scene.geometry)),
+                              &scene.geometry, request.radius)),
       bounds_(depth_bounds(scene_)),
       other_views_(OtherViewRays::of_added(blockers.other_surfaces)),
       march_{scene_,
@@ -47,8 +47,8 @@ std::map<std::size_t, std::shared_ptr<const OverviewScene>> overview_blockers(
   for (const auto& [source, blockers] : scene.linked_occluders) {
     std::shared_ptr<const OverviewScene>& far = built[blockers.get()];
     if (!far) {
-      MarchScene seen =
-          make_march_scene(blockers->casters(), blockers->solids, {}, &scene.geometry);
+      MarchScene seen = make_march_scene(blockers->casters(), blockers->solids, {}, &scene.geometry,
+                                         request.radius);
       std::vector<DepthBounds> bounds = depth_bounds(seen);
       CutSurfaces cut = find_cut_surfaces(seen, up_in_camera(scene), request.radius,
                                           met_by_rays_to_sources(scene.light));

@@ -13,7 +13,10 @@
 //   e = a n + b + b_x dx + b_y dy     of a point of nearness n, (dx, dy) pixels away
 //   e = g t                           of the ray, g > 0
 //
-// A solid is in the way where its front has e >= g t and its back e <= g t.
+// A solid is in the way where its front has e >= g t and its back e <= g (t + 1/2). The half is
+// that of a pixel: where the ray leaves the pixel, the next one takes over. Near a silhouette a
+// solid is less deep than a steep ray comes nearer from one pixel to the next, and the ray would
+// pass behind the back in one pixel and in front of the solid in the next.
 #if defined(SSDO_BITMASK_WALK_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SSDO_BITMASK_WALK_INL_H_
 #undef SSDO_BITMASK_WALK_INL_H_
@@ -146,6 +149,9 @@ class RayTraversal {
   /// At most this many lanes are busy when the others are given new rays.
   static constexpr int kFewBusy = kLanes * 3 / 4;
 
+  /// How far beyond the middle of its pixel a solid ends, in pixels.
+  static constexpr float kHalfPixel = 0.5f;
+
   /// A surface is known only at the middles of pixels, and its tangent plane from the middles of
   /// neighbours. A front less than kBendPx away may be the receiver's surface, bent in between: it
   /// blocks a ray only if it rises above the ray by more than a slope, which falls from kBend at
@@ -255,7 +261,7 @@ class RayTraversal {
       looks = hn::And(looks, hn::And(front > set(0), front >= w.growth * w.t));
       if (!any(looks)) return meets;  // what lies behind is lower still
       const V back = hn::MulAdd(w.a, stored.z, lowest);
-      const M met = hn::And(looks, back <= w.growth * to);
+      const M met = hn::And(looks, back <= w.growth * (to + set(kHalfPixel)));
       meets = hn::Or(meets, met);
       looks = hn::AndNot(met, looks);
     }
@@ -298,8 +304,8 @@ class RayTraversal {
       looks = hn::AndNot(front < height, looks);
       if (!any(meets)) continue;
       const V back = hn::MulAdd(w.a, hn::IfThenElse(is_second, both.w, both.y), way);
-      const M hides =
-          hn::And(hn::And(meets, back <= height), within_radius(w, dx, dy, near, front));
+      const M hides = hn::And(hn::And(meets, back <= hn::MulAdd(w.growth, set(kHalfPixel), height)),
+                              within_radius(w, dx, dy, near, front));
       blocked = hn::Or(blocked, hides);
       looks = hn::AndNot(hides, looks);
     }
