@@ -52,6 +52,32 @@ TEST(Carve, AViewLooksPastWhatItsPixelsDoNotResolve) { EXPECT_EQ(share_cut({0, 0
 
 TEST(Carve, AViewThatResolvesThingsEndsThem) { EXPECT_GT(share_cut({0, 0, 640, 480}), 0.02); }
 
+/// A box before a wall. The room between them is a quarter as deep as they are apart, and much less
+/// than the box is guessed to be.
+TEST(Carve, AViewThroughANarrowGapEndsWhatIsBeforeIt) {
+  const Window window{0, 0, 160, 120};
+  for (const double wall : {0.45, 0.55, 0.65, 0.75, 0.85}) {
+    const double gap = 0.875 * wall;  // its middle
+    const Surface scene = all_of({plane({0, 0, -wall}, {0, 0, 1}),
+                                  Box{{-0.6, -0.6, -0.75 * wall}, {0.6, 0.6, 0}}.surface()});
+    const Camera in_front =
+        look_at(camera_from_fov(30, window, 1), {0, 0, 6}, {0, 0, 0}, {0, 1, 0});
+    Geometry frame = geometry_of(scene, in_front, window);
+    frame.world_known = true;
+    const Camera beside =
+        look_at(camera_from_fov(20, window, 1), {4, 0, -gap}, {0, 0, -gap}, {0, 1, 0});
+    const TempDir folder;
+    write_frame(folder / "beside.exr", frame_of(take_picture(scene, beside, window)));
+    Solids solids = guess_solids(frame);
+    const std::size_t middle = frame.surfaces.index(80, 60);
+    EXPECT_GT(solids.thickness[middle], 0.95) << wall;
+    carve(solids, frame, {place(OtherPictures().also(folder / "beside.exr"), frame)});
+    fmt::print("wall {} behind: {:.3f} deep\n", wall, solids.thickness[middle]);
+    EXPECT_LT(solids.thickness[middle], wall) << wall;
+    EXPECT_GT(solids.thickness[middle], 0.7 * wall) << wall;
+  }
+}
+
 /// What is left of the floor that is guessed just behind the posts of a fence, of its pixels, after
 /// a view from above of the fence and `below`.
 double share_of_floor_kept(const Surface& below) {
