@@ -156,7 +156,7 @@ class Bitmask {
     if (has_sources && !asks) gather_sources();
     gather_visibility();
     if (has_sources && asks) gather_sources();
-    past_ = {};
+    past_ = {};  // sources alone read it
   }
 
   void gather_visibility() {
