@@ -20,7 +20,7 @@ namespace {
 /// The default of a parameter, or of the slices or steps of a method that marches.
 double default_of(const Method& method, std::string_view name) {
   if (!method.supports.march) return find_parameter(method, name)->value;
-  return name == "slices" ? slices_of(Quality::standard) : steps_of(Quality::standard);
+  return name == "slices" ? slices_of(Quality::standard) : steps_of(Quality::standard, false);
 }
 
 bool is_default(const Method& method, const Rung& rung) {

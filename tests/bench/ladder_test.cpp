@@ -42,7 +42,7 @@ TEST(Ladder, OfEveryMethodHasItsDefaultAndALimitBeyondAll) {
     const ModelOptions plain, standard = standard_setting(method).applied_to(plain);
     if (method.supports.march) {
       EXPECT_EQ(standard.slices, slices_of(plain.quality));
-      EXPECT_EQ(standard.steps, steps_of(plain.quality));
+      EXPECT_EQ(standard.steps, steps_of(plain.quality, false));
     } else {
       EXPECT_EQ(resolve_parameters(method, standard.set), resolve_parameters(method, {}));
     }

@@ -232,6 +232,18 @@ TEST(Plan, SlicesAndStepsReachParametersOfTheseNames) {
   EXPECT_EQ(plan_of({march}).samples_per_pixel(), 2 * 3 * 5);
 }
 
+TEST(Plan, ARadiusBringsHalfAsManyStepsAgain) {
+  for (const QualityLevel& level : kQualities) {
+    ModelOptions model;
+    model.quality = level.quality;
+    EXPECT_EQ(plan_of({model}).request.steps, level.steps) << level.name;
+    model.radius = 3;
+    EXPECT_EQ(plan_of({model}).request.steps, level.steps * 3 / 2) << level.name;
+    model.steps = 9;
+    EXPECT_EQ(plan_of({model}).request.steps, 9) << "as asked";
+  }
+}
+
 TEST(Plan, RefusesOptionsThatTheMethodDoesNotTake) {
   const auto refused = [](const std::string& method, const auto& change) {
     ModelOptions model = of_method(method);
