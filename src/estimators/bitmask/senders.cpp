@@ -7,10 +7,10 @@
 // (things on a table, a box of a room). Compiled once for every instruction set.
 //
 // The side of a body that the camera does not see (scene/solids/unseen_side.h) is assumed to
-// receive the unoccluded light of its own hemisphere times the ao of the front; but from a lamp,
-// which may be nearer than the solid is thick, the light that rays find there
-// (SourceVisibility::unseen). In the papers of the method, surfaces that face away from a receiver
-// send nothing: with that, five of seven frames were too dark by 20 % or more.
+// receive the unoccluded light of the hemisphere of the visible side's mirror image times the ao of
+// the visible side; but from a lamp, which may be nearer than the solid is thick, the light that
+// rays find there (SourceVisibility::unseen). In the papers of the method, surfaces that face away
+// from a receiver send nothing: with that, five of seven frames were too dark by 20 % or more.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimators/bitmask/senders.cpp"
 #include <hwy/foreach_target.h>
@@ -112,13 +112,14 @@ HWY_INLINE V3 light_behind(const SenderJob& job, const Place& place, const Share
   const MarchReceiver p = load_receiver(job.scene, place);
   const UnseenSide side = unseen_side(job.scene, p);
   const V3 position = positions(job.scene, place), normal = usable(side.normal, p.valid),
+           mirrored = usable(side.mirrored, p.valid),
            opposite = if_then_else(hn::And(p.valid, side.ends), side.position, position);
-  V3 as_sky = unoccluded_sky(found.light, normal), sum = set(glm::vec3(0));
+  V3 as_sky = unoccluded_sky(found.light, mirrored), sum = set(glm::vec3(0));
   for (std::size_t k = 0; k < found.light.sources.size(); ++k) {
     const Source& source = *found.light.sources[k];
     const V taken = link_weight(job.scene, source, place);
     if (found.sources.empty() || !found.sources[k]->unseen.data()) {
-      as_sky = mul_add(unoccluded(source, position, normal), taken, as_sky);
+      as_sky = mul_add(unoccluded(source, position, mirrored), taken, as_sky);
       continue;
     }
     const V arrives = hn::IfThenElseZero(side.ends, of_source(found.sources[k]->unseen)) * taken;

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <optional>
 #include <utility>
 
 #include "estimators/bitmask/march.h"
 #include "estimators/bitmask/rays/bright_level.h"
 #include "math/bf16x2.h"
+#include "math/infinity.h"
 #include "math/luminance.h"
 #include "math/sobol.h"
 #include "parallel/tiles.h"
@@ -126,6 +128,42 @@ class Senders {
     return {2 / (std::sqrt(u2 + half) + std::sqrt(std::max(u2 - half, 0.0f))), 0};
   }
 
+  /// The unit normal of the unseen side where the ends of the view rays in the solid bend away from
+  /// the shown surface; as ends_of_rays() of rays/unseen_side-inl.h.
+  std::optional<glm::vec3> normal_behind(int x, int y) const {
+    const Interleaving& layout = scene_.layout;
+    const auto& [depths, thicknesses] = scene_.layers.front();
+    const auto nearness = [&](float depth) { return scene_.orthographic ? -depth : 1 / depth; };
+    const auto end_of = [&](std::ptrdiff_t i) {
+      return scene_.orthographic ? depths[i] + thicknesses[i] : depths[i] * (1 + thicknesses[i]);
+    };
+    const std::ptrdiff_t at = layout.index(x, y);
+    const float front = nearness(depths[at]), back = nearness(end_of(at)),
+                per_front = scene_.orthographic ? 1 : 1 / front,
+                per_back = scene_.orthographic ? 1 : 1 / back;
+    const glm::vec2 shown(unpack_bf16_first(scene_.tilt[at]), unpack_bf16_second(scene_.tilt[at]));
+    const auto slope_to = [&](int dx, int dy) {
+      const int qx = x + dx, qy = y + dy;
+      if (qx < 0 || qy < 0 || qx >= layout.width() || qy >= layout.height()) return kInfinity;
+      const std::ptrdiff_t q = layout.index(qx, qy);
+      const float from_plane = (nearness(depths[q]) - front) * per_front -
+                               glm::dot(shown, glm::vec2(float(dx), float(dy)));
+      const bool is_flat = std::abs(from_plane) < kMostCurve / (dx != 0 ? scene_.fx : scene_.fy);
+      return is_flat ? (nearness(end_of(q)) - back) * per_back : kInfinity;
+    };
+    const auto lesser_slope = [](float before, float after) {
+      return std::abs(after) <= std::abs(before) ? after : -before;
+    };
+    const glm::vec2 tilt(lesser_slope(slope_to(-1, 0), slope_to(1, 0)),
+                         lesser_slope(slope_to(0, -1), slope_to(0, 1)));
+    const glm::vec2 bends = glm::abs(tilt - shown) * glm::vec2(scene_.fx, scene_.fy);
+    const float bend = std::max(bends.x, bends.y);
+    if (!(bend > kLeastBend && bend < kInfinity)) return {};
+    const glm::vec2 aside = tilt * glm::vec2(-scene_.fx, scene_.fy),
+                    slope = scene_.orthographic ? glm::vec2(0) : ray_slope(scene_, x, y);
+    return -glm::normalize(glm::vec3(aside, 1 + glm::dot(aside, slope)));
+  }
+
   Side side(const glm::vec3& radiance, int x, int y, std::ptrdiff_t at, bool is_back) const {
     const float depth = scene_.depth()[at], thickness = scene_.layers.front().thickness[at];
     const glm::vec3 normal = tangent_normal(scene_, x, y), view = to_viewer(x, y);
@@ -134,7 +172,9 @@ class Senders {
     const glm::vec2 slope = ray_slope(scene_, x, y);
     const glm::vec3 front =
         scene_.orthographic ? glm::vec3(slope, -depth) : depth * glm::vec3(slope, -1);
-    const Patch shown = patch(x, y, u);
+    const std::optional<glm::vec3> behind = is_back ? normal_behind(x, y) : std::nullopt;
+    const Patch shown =
+        behind ? Patch{1 / std::max(-glm::dot(*behind, view), kLeastFacing), 0} : patch(x, y, u);
     const float area = width * width * shown.over_cosine / (per_depth * scene_.fx * scene_.fy),
                 pixel = width * per_depth / std::min(scene_.fx, scene_.fy);
     const float length = thickness * width * per_depth, light = luminance(radiance);
@@ -142,7 +182,8 @@ class Senders {
     Side out;
     out.light = light - level_;
     out.point.position = is_back ? front - through * view : front;
-    out.point.normal = is_back ? unseen_normal(normal, view) : normal;
+    const glm::vec3 mirrored = unseen_normal(normal, view);
+    out.point.normal = is_back ? behind.value_or(mirrored) : normal;
     out.point.per_radiance = out.light / light * area;
     out.point.power = out.light / light * area * radiance;
     out.point.area = area;

@@ -9,6 +9,8 @@
 #define SSDO_BITMASK_UNSEEN_SIDE_INL_H_
 #endif
 
+#include <limits>
+
 #include "estimators/bitmask/lanes-inl.h"
 #include "scene/solids/unseen_side.h"
 
@@ -19,9 +21,57 @@ namespace ssdo::HWY_NAMESPACE {
 /// scene/solids/unseen_side.h.
 struct UnseenSide {
   V3 position, normal;  ///< unit
+  V3 mirrored;          ///< the normal of the visible side in the mirror, unit
   V clear;              ///< a ray that has come so far from it has left its own solid
   M ends;               ///< an endless solid has no such side
 };
+
+/// The tilt, as MarchPlanes has it, of the surface that the ends of the view rays in solids form.
+struct EndsOfRays {
+  V2 tilt;
+  M bend;  ///< away from the shown surface, so that the tilt tells how the unseen side faces
+};
+
+/// The slope from a pixel to the one after it, by those to both sides: the lesser, as a surface may
+/// end or fold between pixels.
+HWY_INLINE V lesser_slope(V before, V after) {
+  return hn::IfThenElse(hn::Abs(after) <= hn::Abs(before), after, hn::Neg(before));
+}
+
+/// normal_behind() of rays/emitters.cpp does the same for one pixel.
+HWY_INLINE EndsOfRays ends_of_rays(const MarchScene& scene, const MarchReceiver& p) {
+  const auto& [depths, thicknesses] = scene.layers.front();
+  const V one = set(1), none_there = set(std::numeric_limits<float>::infinity());
+  const auto nearness = [&](V depth)
+                            HWY_ATTR { return scene.orthographic ? hn::Neg(depth) : one / depth; };
+  const auto end_of = [&](V depth, V thickness) HWY_ATTR {
+    return scene.orthographic ? depth + thickness : hn::MulAdd(depth, thickness, depth);
+  };
+  const std::ptrdiff_t i = p.place.index;
+  const V depth = load(depths, i), front = nearness(depth),
+          back = nearness(end_of(depth, load(thicknesses, i))), tilts = load(scene.tilt, i),
+          per_front = scene.orthographic ? one : one / front,
+          per_back = scene.orthographic ? one : one / back;
+  const V2 shown{unpack_bf16_first(tilts), unpack_bf16_second(tilts)};
+  const auto slope_to = [&](int dx, int dy) HWY_ATTR {
+    if (p.place.y + dy < 0 || p.place.y + dy >= scene.layout.height()) return none_there;
+    const std::ptrdiff_t q = place_beside(scene.layout, p.place, dx, dy).index;
+    const V depth_there = load(depths, q),
+            from_plane = hn::MulSub(nearness(depth_there) - front, per_front,
+                                    dx != 0 ? shown.x * set(float(dx)) : shown.y * set(float(dy)));
+    const M is_flat =  // false for not-a-number
+        hn::Abs(from_plane) < set(kMostCurve / (dx != 0 ? scene.fx : scene.fy));
+    const V back_there = nearness(end_of(depth_there, load(thicknesses, q)));
+    return hn::IfThenElse(is_flat, (back_there - back) * per_back, none_there);
+  };
+  EndsOfRays ends;
+  ends.tilt = {lesser_slope(slope_to(-1, 0), slope_to(1, 0)),
+               lesser_slope(slope_to(0, -1), slope_to(0, 1))};
+  const V bend = hn::Max(hn::Abs(ends.tilt.x - shown.x) * set(scene.fx),
+                         hn::Abs(ends.tilt.y - shown.y) * set(scene.fy));
+  ends.bend = hn::And(bend > set(kLeastBend), bend < none_there);
+  return ends;
+}
 
 HWY_INLINE UnseenSide unseen_side(const MarchScene& scene, const MarchReceiver& p) {
   const V thickness = load(scene.layers.front().thickness, p.place.index);
@@ -32,7 +82,11 @@ HWY_INLINE UnseenSide unseen_side(const MarchScene& scene, const MarchReceiver& 
   UnseenSide side;
   side.ends = thickness < set(scene.orthographic ? kInfiniteThickness : kInfiniteThicknessRatio);
   side.position = mul_add(p.to_viewer, hn::Neg(hn::IfThenElseZero(side.ends, through)), p.position);
-  side.normal = mul_add(p.to_viewer, set(-2) * dot(p.normal, p.to_viewer), p.normal);
+  side.mirrored = mul_add(p.to_viewer, set(-2) * dot(p.normal, p.to_viewer), p.normal);
+  const EndsOfRays ends = ends_of_rays(scene, p);
+  const V3 of_ends = normal_of_tilt(scene, ends.tilt, {p.slope_x, p.slope_y});
+  side.normal =
+      if_then_else(ends.bend, of_ends * (set(-1) / hn::Sqrt(dot(of_ends, of_ends))), side.mirrored);
   side.clear = set(kBesidePx) * pixel;
   return side;
 }
