@@ -66,9 +66,11 @@ struct PicturedRay {
   glm::vec3 point(float length) const { return origin + length * to; }
 };
 
-class Guesses {
+}  // namespace
+
+class RayFollower {
  public:
-  Guesses(const Scene& scene, float radius)
+  RayFollower(const Scene& scene, float radius)
       : scene_(scene),
         surfaces_(scene.geometry.surfaces),
         casting_(scene.casters().surfaces),
@@ -111,19 +113,24 @@ class Guesses {
   /// Calls on_guessed(place) with the first unseen place that each guessed ray of a pixel passed.
   template <class OnGuessed>
   void gather(int x, int y, const Samples& samples, const OnGuessed& on_guessed) const {
-    const Surfel& s = surfaces_(x, y);
-    const float above =
-        kAboveRoundings * s.rounding + kAboveFootprints * footprint_.at(-s.position.z);
-    const glm::vec3 origin = s.position + above * s.normal;
-    const glm::vec3 to_viewer =
-        direction_to_viewer(s.position, scene_.geometry.camera.orthographic);
-    const glm::mat3 frame = frame_about(s.normal);
+    const std::size_t pixel = surfaces_.index(x, y);
+    const glm::mat3 frame = frame_about(surfaces_[pixel].normal);
     for (int k = samples.first; k < samples.first + samples.count; ++k) {
-      const glm::vec3 to = cosine_direction(frame, sobol_point(std::uint32_t(k), samples.seed));
-      const auto unseen = follow(pictured(origin, to), s.normal, k * kSpread,
-                                 glm::dot(to, to_viewer) > kTowardsCamera);
+      const auto unseen = first_unseen(
+          pixel, cosine_direction(frame, sobol_point(std::uint32_t(k), samples.seed)), k * kSpread);
       if (unseen) on_guessed(*unseen);
     }
+  }
+
+  /// The first unseen place that a ray passed, if it is guessed.
+  std::optional<Unseen> first_unseen(std::size_t pixel, const glm::vec3& to, int set) const {
+    const Surfel& s = surfaces_[pixel];
+    const float above =
+        kAboveRoundings * s.rounding + kAboveFootprints * footprint_.at(-s.position.z);
+    const glm::vec3 to_viewer =
+        direction_to_viewer(s.position, scene_.geometry.camera.orthographic);
+    return follow(pictured(s.position + above * s.normal, to), s.normal, set,
+                  glm::dot(to, to_viewer) > kTowardsCamera);
   }
 
  private:
@@ -301,11 +308,21 @@ class Guesses {
   std::array<float, std::size_t(kSteps* kSets)> distances_;
 };
 
-}  // namespace
+GuessedRays::GuessedRays(const Scene& scene, float radius) {
+  auto rays = std::make_unique<RayFollower>(scene, radius);
+  rays->gather_depths();
+  rays_ = std::move(rays);
+}
+
+GuessedRays::~GuessedRays() = default;
+
+bool GuessedRays::is_guessed(std::size_t pixel, const glm::vec3& to, int set) const {
+  return rays_->first_unseen(pixel, to, set).has_value();
+}
 
 Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius, unsigned seed,
                             const Progress& progress) {
-  Guesses guesses(scene, radius);
+  RayFollower guesses(scene, radius);
   guesses.gather_depths();
   Plane<float> shares(part.width(), part.height(), 0.0f);
   for_each_tile(
@@ -330,7 +347,7 @@ Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius
 Plane<float> guessed_shares(const Scene& scene, const Plane<std::int32_t>& pixels,
                             const glm::ivec2& first, float radius, unsigned seed) {
   constexpr int kLast = kGuessedPattern - 1;
-  Guesses guesses(scene, radius);
+  RayFollower guesses(scene, radius);
   guesses.gather_depths();
   Plane<float> shares(pixels.width, pixels.height, 0.0f);
   for_each_tile(pixels.width, pixels.height, [&](const Tile& tile) {
@@ -340,7 +357,7 @@ Plane<float> guessed_shares(const Scene& scene, const Plane<std::int32_t>& pixel
         if (pixel == kNoPixel) continue;
         const int width = scene.geometry.surfaces.width,
                   place = ((first.y + y) & kLast) * kGuessedPattern + ((first.x + x) & kLast);
-        const Guesses::Samples samples{SlicePattern::rank(place), 1, hash_of(seed, 0, kSeed)};
+        const RayFollower::Samples samples{SlicePattern::rank(place), 1, hash_of(seed, 0, kSeed)};
         guesses.gather(pixel % width, pixel / width, samples, [&](Unseen at) {
           shares(x, y) = at == Unseen::behind_things ? kGuessBehindThings : 1;
         });
@@ -351,7 +368,7 @@ Plane<float> guessed_shares(const Scene& scene, const Plane<std::int32_t>& pixel
 }
 
 GuessedMean mean_guessed(const Scene& scene, float radius) {
-  const Guesses guesses(scene, radius);
+  const RayFollower guesses(scene, radius);
   const Surfaces& surfaces = scene.geometry.surfaces;
   const Window &window = scene.geometry.window,
                shown = intersection(window, scene.geometry.display);
@@ -364,8 +381,8 @@ GuessedMean mean_guessed(const Scene& scene, float radius) {
     for (int x = shown.x0 - window.x0 + apart / 2; x < shown.x1 - window.x0; x += apart) {
       if (!surfaces(x, y).is_usable()) continue;
       ++points;
-      const Guesses::Samples samples{0, kRaysOfMean,
-                                     hash_of(std::uint32_t(x), std::uint32_t(y), kSeed)};
+      const RayFollower::Samples samples{0, kRaysOfMean,
+                                         hash_of(std::uint32_t(x), std::uint32_t(y), kSeed)};
       guesses.gather(x, y, samples, [&](Unseen at) { ++rays[std::size_t(at)]; });
     }
   });

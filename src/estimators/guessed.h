@@ -18,8 +18,11 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
 #include <string_view>
 
 #include "estimators/estimator.h"
@@ -63,6 +66,20 @@ Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius
 inline constexpr std::int32_t kNoPixel = -1;
 Plane<float> guessed_shares(const Scene& scene, const Plane<std::int32_t>& pixels,
                             const glm::ivec2& first, float radius, unsigned seed);
+
+/// Tests single rays.
+class GuessedRays {
+ public:
+  GuessedRays(const Scene& scene, float radius);
+  ~GuessedRays();
+
+  /// Whether a ray from a pixel of the geometry is guessed. `set` selects the places along it that
+  /// are looked at.
+  bool is_guessed(std::size_t pixel, const glm::vec3& to, int set) const;
+
+ private:
+  std::unique_ptr<const class RayFollower> rays_;
+};
 
 /// The product, of G and ao where noise is filtered out of both.
 inline float guessed_product(float g, float ao) {

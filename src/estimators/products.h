@@ -38,8 +38,8 @@ struct ShadowSample {
   Plane<float> width_px;  ///< of the penumbra that the occluder throws here; 0: none
 };
 
-/// How much of the light arrives: what filters average in place of `direct` (filters/light_visibility.h).
-/// About 0..1, but noise is not cut off, so that means are right.
+/// How much of the light arrives: what filters average in place of `direct`
+/// (filters/light_visibility.h). About 0..1, but noise is not cut off, so that means are right.
 struct LightVisibility {
   Plane<glm::vec3> sky;               ///< of what the sky gives, channel by channel
   std::vector<Plane<float>> sources;  ///< of what each sun gives, as if its light met any normal
@@ -57,6 +57,9 @@ struct LightVisibility {
   /// The share that arrives of the sky's light that surfaces mirror, channel by channel; empty:
   /// `specular` is not made.
   Plane<glm::vec3> mirrored_sky;
+  /// For a prior: the share of that light, 0..1, about whose directions the method could only
+  /// guess, and how much of it the guess lets through. Both empty: not known.
+  Plane<float> mirrored_guessed, mirrored_guessed_open;
   std::shared_ptr<const MirrorModel> mirror = {};  ///< what `specular` is computed with
 };
 
@@ -275,7 +278,8 @@ void for_each_plane(const Visit& visit, First& first, Others&... others) {
 
 /// Calls visit(plane of each of `all`) for what light is made of: the sky's share, then each sun's,
 /// then those by other points, then what is emitted, in all and by each light, then what is
-/// mirrored of the sky; some planes may be empty. `all` have as many as the first.
+/// mirrored of the sky, and guessed of that; some planes may be empty. `all` have as many as the
+/// first.
 template <class Visit, class First, class... Others>
 void for_each_visibility(const Visit& visit, First& first, Others&... others) {
   visit(first.visibility.sky, others.visibility.sky...);
@@ -287,6 +291,8 @@ void for_each_visibility(const Visit& visit, First& first, Others&... others) {
   for (std::size_t k = 0; k < first.lights.size(); ++k)
     visit(first.lights[k].emitted, others.lights[k].emitted...);
   visit(first.visibility.mirrored_sky, others.visibility.mirrored_sky...);
+  visit(first.visibility.mirrored_guessed, others.visibility.mirrored_guessed...);
+  visit(first.visibility.mirrored_guessed_open, others.visibility.mirrored_guessed_open...);
 }
 
 }  // namespace ssdo

@@ -48,6 +48,8 @@ Products filter_products(const Filter& filter, Products noisy, const Surfaces& g
   take(visibility.emitted, {});
   for (LightProducts& light : noisy.lights) take(light.emitted, {});
   take(visibility.mirrored_sky, kOfShares);
+  take(visibility.mirrored_guessed, {});
+  take(visibility.mirrored_guessed_open, {});
   planes = filter.apply(std::move(planes), guide, pattern_size);
   for (std::size_t k = 0; k < planes.size(); ++k) {
     const auto put_back = [&](auto* place) {

@@ -99,16 +99,21 @@ HWY_INLINE void interpolate(const Shown& p, const SpreadRow<kCount>& above,
   for (int c = 0; c < kCount; ++c) found[c] = hn::IfThenElseZero(sum > set(0), found[c] / sum);
 }
 
+/// What is open of what is guessed, s, after the prior; `lean` is u - 1/2.
+HWY_INLINE V leaned_share(V s, V lean) {
+  const V half = set(0.5f), open = s * (half + lean), closed = (set(1) - s) * (half - lean);
+  return open / (open + closed);
+}
+
 /// ao' of prior.h; `lean` is u - 1/2.
 HWY_INLINE V leaned(V ao, V guesses, V lean) {
-  const V zero = set(0), one = set(1), half = set(0.5f), g2 = guesses * guesses;
+  const V zero = set(0), one = set(1), g2 = guesses * guesses;
   const V spread = set(0.99f * 4) * ao * (one - ao) + set(0.01f) * g2 * g2,
           g = guesses * hn::Sqrt(spread);
   const V lo = hn::Max(ao - g, zero), hi = hn::Min(ao + g, one), width = hi - lo;
   const V s =
       hn::Clamp((ao - lo) / hn::Max(width, set(1e-6f)), set(kLeastShare), set(1 - kLeastShare));
-  const V open = s * (half + lean), closed = (one - s) * (half - lean);
-  return hn::Clamp(hn::MulAdd(width, open / (open + closed) - s, ao), lo, hi);
+  return hn::Clamp(hn::MulAdd(width, leaned_share(s, lean) - s, ao), lo, hi);
 }
 
 /// The two columns, or rows, of squares around each pixel, and the weight of the second one.
@@ -191,7 +196,29 @@ void write_rows(const PriorField& field, const Geometry& geometry, float offscre
       });
 }
 
+/// Changes the share of what is mirrored of the sky.
+void amend_mirrored(const PriorField& field, const Scene& scene, int y0, int y1,
+                    LightVisibility& visibility) {
+  const V part = set(field.part);
+  between_squares<1>(
+      field.grid, scene.geometry, {&field.visibility_bias}, y0, y1,
+      [&](std::size_t i, int count, const Surfels& surfels, const V* of) HWY_ATTR {
+        const V guessed = saturate(load_first(count, &visibility.mirrored_guessed[i])),
+                s = hn::Clamp(load_first(count, &visibility.mirrored_guessed_open[i]) /
+                                  hn::Max(guessed, set(1e-6f)),
+                              set(kLeastShare), set(1 - kLeastShare));
+        const V more = guessed * part * (leaned_share(s, of[0]) - s);
+        const V3 share = load_first(count, &visibility.mirrored_sky[i]);
+        const V3 after{saturate(share.x + more), saturate(share.y + more),
+                       saturate(share.z + more)};
+        store_first(count, if_then_else(surfels.surface, after, share),
+                    &visibility.mirrored_sky[i]);
+      });
+}
+
 void amend_rows(const PriorField& field, const Scene& scene, int y0, int y1, Products& products) {
+  if (!products.visibility.mirrored_guessed.empty())
+    amend_mirrored(field, scene, y0, y1, products.visibility);
   const auto lean = [&](std::size_t i, int count, const Surfels& surfels, const V* of) HWY_ATTR {
     const V ao = load_first(count, &products.ao[i]),
             after = amended(surfels, ao, of[0], of[1], field.part);

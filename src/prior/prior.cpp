@@ -139,8 +139,8 @@ std::string describe_prior(bool up_is_known) {
   const Network& network = up_is_known ? models.upright : models.camera;
   return fmt::format(
       "prior learned: a network of {} weights, trained on {} generated scenes, fills what no "
-      "picture shows in ao, bent, the light of sky and suns, and bounce{}; guessed is its expected "
-      "error of ao; lamps and reflection go by rules",
+      "picture shows in ao, bent, the light of sky and suns, specular, and bounce{}; guessed is "
+      "its expected error of ao; lamps and reflection go by rules",
       network.weights(), models.frames,
       up_is_known ? "" : ", without knowing which way is up: --env-up tells");
 }

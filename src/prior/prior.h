@@ -26,6 +26,10 @@
 // normal leans as m does: mean of V d = bent |m| + m' - m, |m| that of a cone with ao_half. Its
 // mean error there falls from 10 degrees to 8 (things on a plane), and from 25 to 21 (courts).
 //
+// Of the sky's light that a rough surface mirrors, the march tells the share that comes along
+// guessed rays, and which part s of that the rules let through. That part becomes the sigmoid above
+// of s. A linear function of the direction from ao' and m' was three times as wrong.
+//
 // What is found to be hidden, beyond what the rules hide, sends the mean radiance L of what the
 // frame shows, and what is found to be open sends nothing:
 //
@@ -35,8 +39,8 @@
 // mean by rules, 0.59 so; with the factor mean of albedo ao' / albedo ao for all senders 0.61, with
 // lit senders alone 0.67.
 //
-// All of it is found on a coarse grid (prior/prior_grid.h). Values are interpolated between the four
-// squares around a pixel, by how far these show its surface (scene/same_surface.h).
+// All of it is found on a coarse grid (prior/prior_grid.h). Values are interpolated between the
+// four squares around a pixel, by how far these show its surface (scene/same_surface.h).
 #pragma once
 
 #include <array>

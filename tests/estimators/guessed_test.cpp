@@ -8,6 +8,8 @@
 #include <glm/matrix.hpp>
 
 #include "estimators/bitmask/request.h"
+#include "math/sampling.h"
+#include "math/sobol.h"
 #include "scene/other_views/remove_objects.h"
 #include "support/boxes.h"
 
@@ -64,6 +66,27 @@ TEST(Guessed, RaysOverTheBorderAreThoseOfADiscSegment) {
   EXPECT_NEAR(at(Unseen::top), at(Unseen::bottom), 0.005);
   EXPECT_GT(at(Unseen::left), 0.005);
   EXPECT_EQ(at(Unseen::behind_things), 0);
+}
+
+/// On a plane, a ray is guessed where it passes the border within the radius.
+TEST(Guessed, SingleRaysAreGuessedWhereTheyPassTheBorder) {
+  const float radius = 20 * kPixel;
+  const Scene scene = seen_from_above(plane({}, {0, 0, 1}));
+  const GuessedRays rays(scene, radius);
+  constexpr int kY = 60;
+  int guessed = 0, count = 0;
+  for (const int x : {2, 8, 16, 40}) {
+    for (int k = 0; k < 256; ++k) {
+      const glm::vec3 to = cosine_direction(glm::mat3(1), sobol_point(std::uint32_t(k), 7));
+      const float beyond = -to.x * radius - (float(x) + 0.5f) * kPixel;
+      if (std::abs(beyond) < 1.5f * kPixel) continue;  // the end of the way
+      EXPECT_EQ(rays.is_guessed(scene.geometry.surfaces.index(x, kY), to, k), beyond > 0)
+          << "from column " << x << " to " << to.x;
+      guessed += beyond > 0, ++count;
+    }
+  }
+  EXPECT_GT(guessed, count / 10);
+  EXPECT_LT(guessed, count / 2);
 }
 
 TEST(Guessed, NothingBehindASkyIsGuessed) {

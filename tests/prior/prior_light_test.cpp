@@ -73,6 +73,7 @@ Found find(const Scene& scene, const ProductSet& products, bool learned = true) 
   Request request{.products = products,
                   .radius = kNoLimit,
                   .bounces = products.bounce ? 2 : 0,
+                  .parameters = {{"roughness", 0.5}, {"ior", 1.5}},
                   .visibility_suffices = true};
   request.products.guessed = false;
   Found found;
@@ -120,6 +121,48 @@ TEST(PriorLight, LiesBetweenNoneAndWhatIsUnoccluded) {
           << found.direct[i][c] << " of " << all[c];
   });
   EXPECT_GT(mean_change(found.direct, rules.direct), 1e-3);
+}
+
+/// What is mirrored of the sky along guessed rays is open to the odds s / (1 - s) of the rules
+/// times those of the prior; the rest of it stays as it is.
+TEST(PriorLight, LeansWhatIsMirroredAlongGuessedRays) {
+  const Scene scene = room_in(one_sided());
+  PriorField field = *find(scene, {.ao = true, .direct = true}).field;
+  ASSERT_EQ(field.part, 1) << "there is no radius";
+  for (float& bias : field.visibility_bias.pixels) bias = 0.25f;
+  const Surfaces& surfaces = scene.geometry.surfaces;
+  const auto mirrored = [&](float share, float guessed, float open) {
+    Products products;
+    products.ao = Plane<float>(surfaces.width, surfaces.height, 0.5f);
+    products.visibility.mirrored_sky = {surfaces.width, surfaces.height, glm::vec3(share)};
+    products.visibility.mirrored_guessed = {surfaces.width, surfaces.height, guessed};
+    products.visibility.mirrored_guessed_open = {surfaces.width, surfaces.height, open};
+    apply_prior(field, scene, products);
+    return products.visibility.mirrored_sky;
+  };
+  struct Case {
+    float share, guessed, open, after;
+  };
+  for (const Case& c : {Case{0.4f, 0, 0, 0.4f},
+                        {0.4f, 0.4f, 0.2f, 0.5f},
+                        {0.6f, 0.5f, 0.25f, 0.725f},
+                        {1, 0.5f, 0.25f, 1}}) {
+    const Plane<glm::vec3> after = mirrored(c.share, c.guessed, c.open);
+    for_each_surface(scene, [&](std::size_t i, const glm::vec3&) {
+      ASSERT_NEAR(after[i].x, c.after, 1e-5f) << c.share << " of which " << c.guessed;
+      ASSERT_EQ(after[i].x, after[i].z);
+    });
+  }
+}
+
+/// The march tells which part of it is guessed: on a floor before a wall that ends at the border
+/// there is one, and the prior changes what comes from there only.
+TEST(PriorLight, OfAMirrorChangesWhereRaysAreGuessed) {
+  const Scene scene = room_in(one_sided());
+  const Products found = find(scene, {.ao = true, .specular = true}).products,
+                 rules = find(scene, {.ao = true, .specular = true}, false).products;
+  ASSERT_TRUE(rules.visibility.mirrored_guessed.empty()) << "not looked for without a prior";
+  EXPECT_GT(mean_change(found.specular, rules.specular), 1e-4);
 }
 
 /// Of what no surface in the frame hides, all that the prior finds open is open for the sun.

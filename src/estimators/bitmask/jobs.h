@@ -14,6 +14,7 @@
 
 namespace ssdo {
 
+class GuessedRays;
 struct MirrorModel;
 
 /// The visibility of each pixel, and how much of the light reaches it.
@@ -157,6 +158,11 @@ struct MirroredLightJob {
   const BorderValues* sent_border;  ///< as BounceJob has it; null: nothing
   InterleavedVectors* sky;          ///< the part of the sky's light that is not blocked, by channel
   InterleavedVectors* surfaces;     ///< the mean radiance of surfaces, 0 where none is met
+  const GuessedRays* guesses = nullptr;  ///< null: the next two are not wanted
+  /// The part of the sky's light, 0..1, that comes along guessed rays, and that of it which `sky`
+  /// holds for open.
+  InterleavedPlane* guessed = nullptr;
+  InterleavedPlane* guessed_open = nullptr;
 };
 
 /// How much of what rough surfaces mirror is not blocked.

@@ -10,6 +10,7 @@
 #include "estimators/bitmask/parts.h"
 #include "estimators/bitmask/rays/bright_level.h"
 #include "estimators/bitmask/rays/depth_bounds.h"
+#include "estimators/guessed.h"
 #include "estimators/specular/mirror_model.h"
 
 namespace ssdo {
@@ -38,6 +39,8 @@ void find_reflection(const ReflectionInput& input, Products& products, const Pro
   std::optional<MirroredLightJob> light;
   InterleavedVectors sky, surfaces;
   std::array<BorderValues, 3> beyond;
+  std::optional<GuessedRays> guesses;
+  InterleavedPlane guessed, guessed_open;
   if (request.products.specular) {
     products.visibility.mirror = std::make_shared<const MirrorModel>(scene, request);
     sky = raster.make_color(), surfaces = raster.make_color();
@@ -50,6 +53,11 @@ void find_reflection(const ReflectionInput& input, Products& products, const Pro
     light.emplace(MirroredLightJob{*products.visibility.mirror, scene.specular_color,
                                    sends ? &sent : nullptr, input.two_sided,
                                    sends ? beyond.data() : nullptr, &sky, &surfaces});
+    if (request.ask_prior) {
+      guesses.emplace(scene, request.radius);
+      guessed = InterleavedPlane(layout), guessed_open = InterleavedPlane(layout);
+      light->guesses = &*guesses, light->guessed = &guessed, light->guessed_open = &guessed_open;
+    }
   }
   const std::vector<DepthBounds> bounds = depth_bounds(march.scene);
   const ReflectionJob job{march,
@@ -64,6 +72,10 @@ void find_reflection(const ReflectionInput& input, Products& products, const Pro
   if (open.data()) products.reflection = raster.picture(std::move(open), 1.0f);
   if (!light) return;
   products.visibility.mirrored_sky = raster.picture(std::move(sky));
+  if (guesses) {
+    products.visibility.mirrored_guessed = raster.picture(std::move(guessed));
+    products.visibility.mirrored_guessed_open = raster.picture(std::move(guessed_open));
+  }
   products.specular = raster.picture(std::move(surfaces));
 }
 

@@ -7,6 +7,9 @@
 //   S = sum_open w_i L(w_i) / sum_all w_i L(w_i),   H = sum_met w_i sent_i / sum_all w_i
 //   w_i = F(w_i) G1(w_i)
 //
+// For a prior, the shares of the sky's light that come along guessed rays are found as well, of the
+// mean over the channels.
+//
 // L is the sky as mirrored_light-inl.h has it, sent_i the radiance of the surface in the pixel
 // where the ray ends, of its back if the ray meets the back. Surfaces that go on beyond the border
 // send what their border pixels send; surfaces that only other views show send nothing. Compiled
@@ -22,6 +25,7 @@
 
 #include "estimators/bitmask/rays/block-inl.h"
 #include "estimators/bitmask/rays/ray-inl.h"
+#include "estimators/guessed.h"
 #include "estimators/microfacets.h"
 #include "estimators/specular/mirrored_light-inl.h"
 #include "math/frame.h"
@@ -29,6 +33,9 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
+
+/// Neighbouring rays look at different places, see GuessedRays.
+constexpr int kSpread = 5;
 
 /// What a facet of each lane, chosen by one point of the unit square, mirrors to the viewer: the
 /// direction, unit; the share of the light from there that other facets do not block, 0 below the
@@ -113,13 +120,38 @@ struct SentBeyond {
   }
 };
 
+/// Whether it is asked if the k-th rays of a member of the pattern are guessed. One in four tells
+/// enough: what is made of it changes slowly. Which one differs from member to member, so that they
+/// are spread as all rays are.
+HWY_INLINE bool is_looked_at(int rank, int k) {
+  return (k & 3) == (rank / (Interleaving::kMembers / 4) & 3);
+}
+
+/// Whether the rays of a vector of pixels are guessed, 1 or 0, the k-th of each.
+HWY_INLINE V guessed_rays(const GuessedRays& guesses, const ReflectionJob& job,
+                          const MarchReceiver& p, const Mirrored& m, int sample) {
+  const MarchScene& scene = job.march.scene;
+  alignas(64) int columns[kLanes];
+  hn::Store(columns_of(scene, p.place), DI(), columns);
+  const Lanes3 to(m.to);
+  const Lanes looks(hn::IfThenElse(hn::And(p.valid, m.share > set(0)), set(1), set(0)));
+  return by_lane([&](int lane) {
+    return looks[lane] > 0 &&
+           guesses.is_guessed(scene.surfaces.index(columns[lane], p.place.y), to[lane], sample);
+  });
+}
+
+HWY_INLINE V mean_of(const V3& color) { return (color.x + color.y + color.z) * set(1.0f / 3); }
+
 /// The sums of the head of this file.
 struct MirroredSums {
   V3 open, all, met, weights;
+  V looked_at, guessed, guessed_open;  ///< of the rays that is_looked_at() selects
 
+  /// Adds a ray; returns w_i L(w_i).
   template <bool kOrthographic>
-  HWY_INLINE void add(const ReflectionJob& job, const MarchReceiver& p, const V3& f0,
-                      const Mirrored& m, const RayVisibility& a, const SentBeyond& beyond) {
+  HWY_INLINE V3 add(const ReflectionJob& job, const MarchReceiver& p, const V3& f0,
+                    const Mirrored& m, const RayVisibility& a, const SentBeyond& beyond) {
     const MirroredLightJob& light = *job.light;
     const V3 weight = if_then_else_zero(m.share > set(0), fresnel(f0, m.facing) * m.share),
              seen = weight * look_up(light.model.sky, m.to, set(1 / float(job.rays)) / m.density);
@@ -130,6 +162,15 @@ struct MirroredSums {
       met = met + weight * mul_add(beyond.mean(), a.lost_beyond,
                                    sent_from<kOrthographic>(light, job.march.scene, p, m.to,
                                                             a.blocked_at));
+    return seen;
+  }
+
+  /// `seen` of a ray of which the share `arrives`; `is_guessed` is 1 or 0.
+  HWY_INLINE void add_guess(const V3& seen, V arrives, V is_guessed) {
+    const V whole = mean_of(seen), part = whole * is_guessed;
+    looked_at = looked_at + whole;
+    guessed = guessed + part;
+    guessed_open = hn::MulAdd(part, arrives, guessed_open);
   }
 
   /// `unlit`: the part of the sky that is not blocked, where a channel of it has no light.
@@ -143,6 +184,9 @@ struct MirroredSums {
     store(V3{part(met.x, weights.x, zero), part(met.y, weights.y, zero),
              part(met.z, weights.z, zero)},
           *job.surfaces, i);
+    if (!job.guesses) return;
+    store(part(guessed, looked_at, zero), *job.guessed, i);
+    store(part(guessed_open, looked_at, zero), *job.guessed_open, i);
   }
 };
 
@@ -152,9 +196,11 @@ struct BlockOfMirrors {
   BlockValues share, facing, density;  ///< as Mirrored has them
   BlockValues open, all;
   BlockVectors open_sky, all_sky, met, weights;
+  BlockValues looked_at, guessed, guessed_open;
 
   HWY_INLINE void clear(int i) {
-    for (BlockValues* sum : {&open, &all}) sum->set_at(i, set(0));
+    for (BlockValues* sum : {&open, &all, &looked_at, &guessed, &guessed_open})
+      sum->set_at(i, set(0));
     for (BlockVectors* sum : {&open_sky, &all_sky, &met, &weights})
       sum->set_at(i, set(glm::vec3(0)));
   }
@@ -164,11 +210,13 @@ struct BlockOfMirrors {
   }
   HWY_INLINE Mirrored mirrored(int i) const { return {to(i), share(i), facing(i), density(i)}; }
   HWY_INLINE MirroredSums light(int i) const {
-    return {open_sky(i), all_sky(i), met(i), weights(i)};
+    return {open_sky(i), all_sky(i), met(i), weights(i), looked_at(i), guessed(i), guessed_open(i)};
   }
   HWY_INLINE void set_light(int i, const MirroredSums& sums) {
     open_sky.set_at(i, sums.open), all_sky.set_at(i, sums.all);
     met.set_at(i, sums.met), weights.set_at(i, sums.weights);
+    looked_at.set_at(i, sums.looked_at);
+    guessed.set_at(i, sums.guessed), guessed_open.set_at(i, sums.guessed_open);
   }
 };
 
@@ -222,7 +270,13 @@ void reflection(const ReflectionJob& job, const Window& part) {
             i, mirrors->all(i) + hn::IfThenElseZero(p.valid, hn::Max(m.share, set(0))));
         if (!job.light) return;
         MirroredSums light = mirrors->light(i);
-        light.add<kOrthographic>(job, p, f0_at(*job.light, scene, place), m, a, beyond);
+        const V3 seen =
+            light.add<kOrthographic>(job, p, f0_at(*job.light, scene, place), m, a, beyond);
+        const int rank = SlicePattern::rank(member_at(scene, place));
+        if (job.light->guesses && is_looked_at(rank, k))
+          light.add_guess(
+              seen, a.share,
+              guessed_rays(*job.light->guesses, job, p, m, kSpread * (rank * job.rays + k)));
         mirrors->set_light(i, light);
       });
     }
