@@ -2,7 +2,9 @@
 """dataset.py WORK FIRST LAST OUT.npz: features and truth at some pixels of the frames FIRST..LAST
 
 Per frame FAR pixels with unlimited radius and NEAR pixels with its random radius; features with
-the up axis known (x_*) and unknown (c_*); moments in the axes of each."""
+the up axis known (x_*) and unknown (c_*); moments in the axes of each. Of frames that WORK/turned
+has too, seen by a camera that is turned a little, the features of PAIRS points in both frames,
+with unlimited radius (*_turned)."""
 import os
 import sys
 
@@ -11,7 +13,7 @@ import numpy as np
 import features
 import gbuffer
 
-FAR, NEAR = 320, 160
+FAR, NEAR, PAIRS = 320, 160, 320
 HEADER = 12
 COLUMNS = 16
 
@@ -24,6 +26,10 @@ def read_truth(path):
     if header[1] == 1:  # y up
         rows[:, 3:6] = np.stack([rows[:, 3], rows[:, 5], -rows[:, 4]], 1)
     return header, rows
+
+
+def up_axis(header):
+    return np.array([0, 1.0, 0] if header[1] == 1 else [0, 0, 1.0])
 
 
 def read_estimate(folder, name, number, radius):
@@ -48,7 +54,7 @@ def frame_samples(work, number, rng):
     far, channels = read_estimate(f"{work}/tool", "far", number, np.inf)
     near, _ = read_estimate(f"{work}/tool", "near", number, 1.0)
     rows = rows[g.valid.ravel()[rows[:, 0].astype(int)]]
-    up = np.array([0, 1.0, 0] if header[1] == 1 else [0, 0, 1.0])
+    up = up_axis(header)
     m1, m0 = tool_moments(channels, far)
     pick = lambda n: rows[rng.choice(len(rows), n, replace=len(rows) < n)]
     far_rows, near_rows = pick(FAR), pick(NEAR)
@@ -76,19 +82,47 @@ def frame_samples(work, number, rng):
     return out
 
 
+def pairs(work, number, rng):
+    """The same points in a frame and in the turned one; None where these share too few"""
+    header, rows = read_truth(f"{work}/turned/frames/truth_{number}.bin")
+    pixels = rows[:, [15, 0]].astype(int).T
+    folders = work, f"{work}/turned"
+    frames = [gbuffer.read_gbuffer(f"{f}/frames/frame_{number}.exr") for f in folders]
+    shown = np.logical_and(*[g.valid.ravel()[p] for g, p in zip(frames, pixels)])
+    pixels = pixels[:, shown]
+    if pixels.shape[1] < PAIRS:
+        return None
+    pixels = pixels[:, rng.choice(pixels.shape[1], PAIRS, replace=False)]
+    found = [read_estimate(f"{f}/tool", "far", number, np.inf)[0] for f in folders]
+    out = dict(turned_family=int(header[0]), turned_number=int(header[9]))
+    for prefix, direction in (("x", up_axis(header)), ("c", None)):
+        both = [
+            features.Geometry(g, direction).features(e, p)
+            for g, e, p in zip(frames, found, pixels)
+        ]
+        out[f"{prefix}_turned"] = np.stack(both).astype(np.float16)
+    return out
+
+
+def stacked(samples):
+    return {k: np.array([s[k] for s in samples]) for k in samples[0]}
+
+
 def main():
     work, first, last, path = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
     rng = np.random.default_rng(first)
-    samples = []
+    samples, turned = [], []
     for i in range(first, last + 1):
         number = f"{i:05d}"
         if not os.path.exists(f"{work}/frames/truth_{number}.bin"):
             continue
         try:
             samples.append(frame_samples(work, number, rng))
+            if os.path.exists(f"{work}/turned/frames/truth_{number}.bin"):
+                turned.append(pairs(work, number, rng))
         except OSError as error:
             print(error)
-    np.savez(path, **{k: np.array([s[k] for s in samples]) for k in samples[0]})
+    np.savez(path, **stacked(samples), **stacked([s for s in turned if s]))
 
 
 if __name__ == "__main__":

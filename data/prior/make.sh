@@ -8,12 +8,18 @@ set -e
 here=$(cd "$(dirname "$0")" && pwd)
 export SSDO_THREADS=1 OMP_NUM_THREADS=1 PYTHONPATH="$here"
 
-# What the tool knows of the frames $first to $last, beyond the border extended and open.
+# run FOLDER FRAMES NAME OPTIONS: what the tool knows of frames.
 run() {
-  name=$1
-  shift
-  "$ssdo" "$work/frames/frame_#####.exr" --frames "$first-$last" -o "$work/tool/${name}_#####.exr" \
+  folder=$1 numbers=$2 name=$3
+  shift 3
+  "$ssdo" "$folder/frames/frame_#####.exr" --frames "$numbers" -o "$folder/tool/${name}_#####.exr" \
     --compression none --on-error continue --skip-existing -q --env-up z --prior rules "$@" || true
+}
+
+# The same without a radius, beyond the border extended and open.
+run_far() {
+  run "$1" "$2" far --radius inf --products ao,guessed,bent,direct --env "$work/linear.exr"
+  run "$1" "$2" far_open --radius inf --products ao --offscreen open
 }
 
 # make.sh batch WORK SSDO FRAMES FIRST: 100 frames, or as many as there are to be.
@@ -24,15 +30,18 @@ if [ "$1" = batch ]; then
   cache=$(printf '%s/cache/%05d_%05d.npz' "$work" "$first" "$last")
   [ ! -f "$cache" ] || exit 0
   "$work/generate" "$work/frames" "$first" $((last - first + 1))
-  run far --radius inf --products ao,guessed,bent,direct --env "$work/linear.exr"
-  run far_open --radius inf --products ao --offscreen open
-  run near --radius 1 --products ao,guessed,bent
-  run near_open --radius 1 --products ao --offscreen open
+  run_far "$work" "$first-$last"
+  run "$work" "$first-$last" near --radius 1 --products ao,guessed,bent
+  run "$work" "$first-$last" near_open --radius 1 --products ao --offscreen open
+  # One frame of five, with the camera turned by a degree.
+  turned=$((first + 3))
+  for i in $(seq $turned 5 "$last"); do "$work/generate" --turn 1 "$work/turned/frames" "$i" 1; done
+  run_far "$work/turned" "$turned-${last}x5"
   exec /usr/bin/python3 "$here/dataset.py" "$work" "$first" "$last" "$cache"
 fi
 
 work=$1 ssdo=$2 frames=$3 out=${4:-$1}
-mkdir -p "$work/frames" "$work/tool" "$work/cache"
+mkdir -p "$out" "$work/cache" "$work/frames" "$work/tool" "$work/turned/frames" "$work/turned/tool"
 if [ ! -x "$work/generate" ]; then
   g++ -std=c++20 -O2 -march=native "$here"/generator/*.cpp -o "$work/generate" \
     -lembree3 -lOpenImageIO -lOpenImageIO_Util

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """train.py WORK OUT [ablate]: trains candidates on WORK/cache, chooses by the worst validation
 family, and writes the weights OUT/prior.bin; with `ablate` tables only"""
+import concurrent.futures
 import dataclasses
 import glob
 import hashlib
@@ -20,7 +21,8 @@ RADII = ("far", "near")
 
 
 class Data:
-    """All frames of a kind of model. far_x (frames, pixels, inputs) float16, and so on."""
+    """All frames of a kind of model: x, by radius (frames, pixels, inputs) float16, and so on; and
+    pairs (frames, 2, pixels, inputs), the same points before and after the camera turns."""
 
     def __init__(self, work, kind):
         paths = sorted(glob.glob(f"{work}/cache/*.npz"))
@@ -43,6 +45,12 @@ class Data:
         self.unseen = np.isin(self.family, held_families)
         self.held = self.unseen | (self.number % 13 == 5)
         self.train = np.flatnonzero(~self.held)
+        self.pairs = torch.from_numpy(join(f"{prefix}_turned"))
+        family, number = join("turned_family"), join("turned_number")
+        self.pairs_unseen = np.flatnonzero(np.isin(family, held_families))
+        self.pairs_train = np.flatnonzero(
+            ~np.isin(family, held_families) & (number % 13 != 5)
+        )
 
 
 def balanced(light):
@@ -72,12 +80,23 @@ def moment_loss(out, width, truth, tool, worse):
     return (ratio + worse * torch.relu(ratio - 1)).mean()
 
 
+def rms(v):
+    return (v.square().mean(-1) + 1e-5).sqrt()
+
+
+def turned_loss(net, x):
+    """How much ao' of the same points changes as the camera turns, over the change of the rules"""
+    after = [model.answer(net(v), v[..., 0], v[..., 1])[0] for v in (x[:, 0], x[:, 1])]
+    return (rms(after[0] - after[1]) / (rms(x[:, 0, :, 0] - x[:, 1, :, 0]) + 0.01)).mean()
+
+
 @dataclasses.dataclass
 class Options:
     seed: int = 0
     hidden: tuple = (48, 32)
     epochs: float = 7
     worse: float = 1  # weight of what is worse than the rules
+    steady: float = 0.25  # weight of what changes as the camera turns
     noise: float = 0.1  # of the inputs, in their deviations, the same for all pixels of a frame
     blind: float = 0  # share of the frames that are shown without the context of their pixels
     balance: bool = True  # see balanced()
@@ -95,11 +114,11 @@ def train(data, o):
     rng = np.random.default_rng(o.seed)
     net = model.Prior(len(features.NAMES), o.hidden)
     frames = rng.permutation(data.train)[: int(o.limit * len(data.train))]
-    some = data.x["far"][frames].reshape(-1, len(features.NAMES))[::23].float()
+    some = data.x["far"][data.train].reshape(-1, len(features.NAMES))[::23].float()
     net.mean[:] = some.mean(0)
     net.inverse_deviation[:] = 1 / (some.std(0) + 1e-2)
     k = features.NAMES.index("pixel.log_radius")  # it varies only where it is limited
-    radius = torch.cat([some[:, k], data.x["near"][frames][..., k].reshape(-1)[::23].float()])
+    radius = torch.cat([some[:, k], data.x["near"][data.train][..., k].reshape(-1)[::23].float()])
     net.mean[k], net.inverse_deviation[k] = radius.mean(), 1 / radius.std()
     net.inverse_deviation[list(o.drop)] = 0
     order, sign = features.mirror()
@@ -110,6 +129,7 @@ def train(data, o):
     steps = int(o.epochs * len(frames) / batch["far"])
     optimizer = torch.optim.AdamW(net.parameters(), 4e-3, weight_decay=3e-3)
     rate = torch.optim.lr_scheduler.OneCycleLR(optimizer, 4e-3, total_steps=steps, pct_start=0.1)
+    turned = 6  # frames
     jitter = o.noise / net.inverse_deviation.clamp(min=0.1)
     jitter[:2] = 0
     for _ in range(steps):
@@ -131,6 +151,10 @@ def train(data, o):
                 side = lambda v: v * torch.where(flip[:, None, None], turn, torch.ones(3))
                 truth, tool = side(data.truth1[f]), side(data.tool1[f])
                 loss = loss + 0.5 * moment_loss(out, width, truth, tool, o.worse)
+        f = data.pairs_train[rng.choice(len(data.pairs_train), turned)]
+        x = data.pairs[f].float()
+        flip = torch.from_numpy(rng.random(turned) < 0.5)[:, None, None, None]
+        loss = loss + o.steady * turned_loss(net, torch.where(flip, x[..., order] * sign_t, x))
         optimizer.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(net.parameters(), 2.0)
@@ -183,6 +207,15 @@ def errors(data, net, frames):
                     row["light_" + name] = float(np.mean(v))
             rows.append(row)
     return rows
+
+
+def changes(data, net):
+    """RMS change of ao' of unseen families as the camera turns a little, and that of the rules"""
+    with torch.no_grad():
+        x = data.pairs[data.pairs_unseen].float()
+        after = [model.answer(net(v), v[..., 0], v[..., 1])[0] for v in (x[:, 0], x[:, 1])]
+        change = after[0] - after[1], x[:, 0, :, 0] - x[:, 1, :, 0]
+    return [float(rms(v).mean()) for v in change]
 
 
 def rank_correlation(a, b):
@@ -259,7 +292,16 @@ def ratio(t, column, rule=None):
     return np.exp(np.mean([np.log(v[column] / v[rule]) for v in t.values()]))
 
 
+@dataclasses.dataclass
+class Chosen:
+    kind: str
+    net: model.Prior
+    frames: int  # that it was trained on
+    report: list  # (title, table or None)
+
+
 def choose(work, kind):
+    torch.set_num_threads(1)
     data = Data(work, kind)
     unseen = np.flatnonzero(data.unseen)
     best = None
@@ -272,12 +314,15 @@ def choose(work, kind):
         print(kind, options, f"worst {worst(t):.3f}, {seconds:.0f} CPU s", flush=True)
         if best is None or worst(t) < best[0]:
             best = worst(t), options, net, t, rows
-    show(f"{kind}: chosen {best[1]}; families never trained on", best[3])
-    print("easiest quarter: far rules {:.3f} prior {:.3f}, light {:.3f} {:.3f} {:.3f}".format(
-        *easy(best[4])))
+    _, options, net, t, rows = best
     seen = np.flatnonzero(data.held & ~data.unseen)
-    show(f"{kind}: other frames of families trained on", table(data, errors(data, best[2], seen)))
-    return data, best[2]
+    return Chosen(kind, net, len(data.train), [
+        (f"{kind}: chosen {options}; families never trained on", t),
+        ("change of ao by a degree: prior {:.4f}, rules {:.4f}".format(*changes(data, net)), None),
+        ("easiest quarter: far rules {:.3f} prior {:.3f}, light {:.3f} {:.3f} {:.3f}".format(
+            *easy(rows)), None),
+        (f"{kind}: other frames of families trained on", table(data, errors(data, net, seen))),
+    ])
 
 
 def digest(work):
@@ -293,15 +338,15 @@ def digest(work):
     return h.hexdigest()
 
 
-def write(work, folder, nets, data):
-    header = ["ssdo-prior 1", f"source {digest(work)}", f"frames {len(data.train)}"]
+def write(work, folder, chosen):
+    header = ["ssdo-prior 1", f"source {digest(work)}", f"frames {chosen[0].frames}"]
     header += ["inputs " + " ".join(features.NAMES)]
-    for kind, net in nets.items():
-        header.append(f"model {kind} " + " ".join(str(n) for n in model.sizes(net)))
+    for c in chosen:
+        header.append(f"model {c.kind} " + " ".join(str(n) for n in model.sizes(c.net)))
     with open(f"{folder}/prior.bin", "wb") as f:
         f.write(("\n".join(header) + "\nend\n").encode())
-        for net in nets.values():
-            f.write(model.flat_weights(net).tobytes())
+        for c in chosen:
+            f.write(model.flat_weights(c.net).tobytes())
 
 
 ABLATIONS = {
@@ -310,7 +355,6 @@ ABLATIONS = {
     "no open": lambda n: "open" in n,
     "no depth": lambda n: "depth" in n,
     "no guessed": lambda n: "guessed" in n and n != "pixel.guessed",
-    "no surroundings": lambda n: n.startswith("level"),
     "no frame": lambda n: n.split(".")[0] in ("frame", "top", "bottom", "left", "right"),
     "pixel only": lambda n: not n.startswith("pixel"),
 }
@@ -325,13 +369,15 @@ def ablate(work):
         runs.append((name, dict(drop=drop)))
     runs.append(("a quarter of the frames", dict(limit=0.25, epochs=20)))
     runs.append(("no directions", dict(directions=False)))
+    runs.append(("no turned frames", dict(steady=0)))
     runs.append(("frames as they are", dict(balance=False)))
     for name, options in runs:
         net = train(data, Options(**{"epochs": 5, **options}))
         t = table(data, errors(data, net, unseen))
         print(
             f"{name:24s} far {ratio(t, 'far'):.3f} near {ratio(t, 'near'):.3f}"
-            f" light {ratio(t, 'light_both', 'light_rules'):.3f} worst {worst(t):.3f}",
+            f" light {ratio(t, 'light_both', 'light_rules'):.3f} worst {worst(t):.3f}"
+            f" change {changes(data, net)[0]:.4f}",
             flush=True,
         )
 
@@ -342,11 +388,14 @@ def main():
     if len(sys.argv) > 3:
         ablate(work)
         return
-    chosen = {kind: choose(work, kind) for kind in AXES}
-    nets = {kind: net for kind, (_, net) in chosen.items()}
-    write(work, folder, nets, chosen["up"][0])
-    for kind, net in nets.items():
-        torch.save({"sizes": model.sizes(net), "state": net.state_dict()}, f"{work}/{kind}.pt")
+    with concurrent.futures.ProcessPoolExecutor() as pool:
+        chosen = list(pool.map(choose, [work] * len(AXES), AXES))
+    for c in chosen:
+        for title, t in c.report:
+            show(title, t) if t else print(title)
+    write(work, folder, chosen)
+    for c in chosen:
+        torch.save({"sizes": model.sizes(c.net), "state": c.net.state_dict()}, f"{work}/{c.kind}.pt")
 
 
 if __name__ == "__main__":

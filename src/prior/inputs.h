@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What the learned prior is told about a pixel, in the order of data/prior/features.py: the pixel
-// itself, means around it at three scales, and means of the frame and along its borders. All of it
-// is without units, and changes continuously with the camera.
+// itself, means of the frame, and means of strips along its borders. All of it is without units,
+// and changes continuously with the camera. Where a strip shows few surfaces, its means lean to
+// those of the frame.
 //
-// Means are over cells of the display window, of which a square frame has 48 x 48, and over cells 4
-// and 12 times as large. Between the centres of cells they are interpolated; where little of a cell
-// shows surfaces, its means lean to those of the frame.
+// Means of the surroundings of the pixel, at three scales, are no help beside these: trained with
+// them or without, the prior errs by the same on scenes that it has not seen.
 #pragma once
 
 #include <array>
@@ -31,8 +31,6 @@ glm::mat3 prior_axes(const std::optional<glm::vec3>& up);
 /// What the prior is told of a frame as a whole. For a frame that is computed in bands, it comes
 /// from the overview.
 struct PriorContext {
-  static constexpr int kScales = 3;
-
   /// The values whose means are taken; names with 2 are squares, for deviations.
   enum Value {
     kNormal = 0,
@@ -49,25 +47,22 @@ struct PriorContext {
   };
   using Values = std::array<float, kValues>;
 
-  /// The share of a cell that shows surfaces, and sums over these, divided by the size of the cell.
-  struct Cell {
+  /// Of a part of the frame: the share that shows surfaces, and means over these.
+  struct Means {
     float covered = 0;
-    Values sums = {};
+    Values of = {};
   };
 
   float mean_log_depth = 0;  ///< see PriorInputs::find_log_depth()
-  Cell frame;                ///< all of it
-  Values frame_mean;         ///< over surfaces
-  std::array<Plane<Cell>, kScales> cells;
+  Means frame;
+  std::array<Means, 4> sides;  ///< along top, bottom, left and right
 };
 
 class PriorInputs {
  public:
-  static constexpr int kScales = PriorContext::kScales;
-  static constexpr std::size_t kOfPixel = 19, kOfScale = 12, kOfFrame = 16, kOfSide = 6;
-  /// Inputs of a pixel, and those that all pixels have in common, which follow them.
-  static constexpr std::size_t kOwn = kOfPixel + kScales * kOfScale,
-                               kShared = kOfFrame + 4 * kOfSide;
+  /// Inputs of a pixel, and those that all pixels have in common, which follow them: of the frame,
+  /// and of each side.
+  static constexpr std::size_t kOwn = 19, kShared = 16 + 4 * 6;
 
   /// `grid` with the means of what was found; `radius` in scene units, or infinity; `up` as
   /// prior_axes() has it. `of_frame`: the context of the frame, if the geometry is a band; null:
@@ -84,14 +79,11 @@ class PriorInputs {
  private:
   using Value = PriorContext::Value;
   using Values = PriorContext::Values;
-  using Cell = PriorContext::Cell;
 
   void find_log_depth(bool is_known);
-  void find_cells(double aspect);
+  void find_means(double aspect);
   void share();
   Values values_of(int x, int y) const;
-  Values means(const Cell& cell) const;
-  Cell look_up(const Plane<Cell>& cells, float across, float down) const;
 
   const PriorGrid& grid_;
   glm::mat3 axes_;

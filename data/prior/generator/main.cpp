@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// generate FOLDER FIRST COUNT [FAMILY...]: frames FIRST.. of random scenes. The family of a frame
-// is that of family_of(), or taken in turn from those that are named. Frames that exist are kept.
+// generate [--turn DEGREES] FOLDER FIRST COUNT [FAMILY...]: frames FIRST.. of random scenes. The
+// family of a frame is that of family_of(), or taken in turn from those that are named. Frames that
+// exist are kept. With --turn the camera is turned about what it looks at, and the truth is that of
+// the points that the frame shows without.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -80,7 +82,51 @@ Vec sun_direction(Random& r) {
   return {std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e)};
 }
 
-bool make_frame(RTCDevice device, const std::string& folder, int id, int family, int attempt) {
+// The camera turned about the vertical through the middle of what `frame` shows.
+Camera turned(const Camera& camera, const Frame& frame, float degrees) {
+  const Vec middle = camera.eye + frame.forward * frame.mean_depth;
+  const Rot turn = about_z(degrees * kPi / 180);
+  Camera out = camera;
+  out.eye = middle + turn * (camera.eye - middle);
+  out.target = out.eye + turn * (camera.target - camera.eye);
+  return out;
+}
+
+// The pixel of `f` that shows the point of pixel i of `before`; -1 if none does.
+int find_point(const Frame& f, const Frame& before, size_t i) {
+  const Vec p = before.position[i], way = p - f.eye;
+  const float depth = f.ortho ? 1 : dot(way, f.forward);
+  if (!(depth > 0)) return -1;
+  const float across = dot(way, f.right) / (depth * f.half_width);
+  const float up = dot(way, f.up) / (depth * f.half_height);
+  const int x = int(std::floor((1 + across) / 2 * float(f.width)));
+  const int y = int(std::floor((1 - up) / 2 * float(f.height)));
+  if (x < 0 || y < 0 || x >= f.width || y >= f.height) return -1;
+  const size_t k = size_t(y) * size_t(f.width) + size_t(x);
+  if (!f.valid[k] || dot(f.facet[k], before.facet[i]) < .95f) return -1;
+  const float pixel = 2 * f.half_width / float(f.width) * depth;
+  const Vec apart = f.position[k] - p;
+  const bool is_same =
+      length(apart) < 3 * pixel && std::fabs(dot(apart, before.facet[i])) < .3f * pixel;
+  return is_same ? int(k) : -1;
+}
+
+// Of `rows`, those of points that `f` shows too, at its pixels.
+std::vector<Truth> shared_truth(const Frame& f, const Frame& before,
+                                const std::vector<Truth>& rows) {
+  std::vector<Truth> out;
+  for (Truth t : rows) {
+    const int pixel = find_point(f, before, size_t(t.pixel));
+    if (pixel < 0) continue;
+    t.before = t.pixel;
+    t.pixel = float(pixel);
+    out.push_back(t);
+  }
+  return out;
+}
+
+bool make_frame(RTCDevice device, const std::string& folder, int id, int family, int attempt,
+                float degrees) {
   Random r(unsigned(id) * 7919u + unsigned(attempt) * 104729u + 17u);
   const Family& kind = families()[size_t(family)];
   Scene s;
@@ -91,14 +137,19 @@ bool make_frame(RTCDevice device, const std::string& folder, int id, int family,
   const RayCaster rays(device, s.mesh);
   const Size size = frame_size(r);
   const float roll = r.chance(.12f) ? r(-.15f, .15f) : 0;
-  const Frame frame = render(rays, s.camera, size.width, size.height, roll);
+  Frame frame = render(rays, s.camera, size.width, size.height, roll);
   if (!is_useful(frame, close, r)) return false;
   // The radius is a share of the frame's size at its mean depth; the file's unit is the radius.
   const float extent =
       2 * std::sqrt(frame.half_width * frame.half_height) * (frame.ortho ? 1 : frame.mean_depth);
   const TruthPlan plan{extent * r.log(.03f, 1.5f), sun_direction(r), 3, 10};
-  const std::vector<Truth> rows = trace_truth(rays, frame, plan, r);
+  std::vector<Truth> rows = trace_truth(rays, frame, plan, r);
   if (!is_lit(rows, r)) return false;
+  if (degrees != 0) {
+    Frame next = render(rays, turned(s.camera, frame, degrees), size.width, size.height, roll);
+    rows = shared_truth(next, frame, rows);
+    frame = std::move(next);
+  }
   FrameHeader h{};
   h.family = float(family);
   h.up_axis = r.chance(.5f) ? 1 : 2;
@@ -120,8 +171,14 @@ bool make_frame(RTCDevice device, const std::string& folder, int id, int family,
 }  // namespace
 
 int main(int argc, char** argv) try {
+  float degrees = 0;
+  if (argc > 2 && std::string(argv[1]) == "--turn") {
+    degrees = float(std::atof(argv[2]));
+    argc -= 2;
+    argv += 2;
+  }
   if (argc < 4) {
-    std::printf("usage: generate FOLDER FIRST COUNT [FAMILY...]\n");
+    std::printf("usage: generate [--turn DEGREES] FOLDER FIRST COUNT [FAMILY...]\n");
     for (size_t i = 0; i < families().size(); ++i)
       std::printf("%zu %s%s\n", i, families()[i].name, families()[i].validation ? " *" : "");
     return 2;
@@ -137,7 +194,7 @@ int main(int argc, char** argv) try {
     if (std::filesystem::exists(path_of(folder, "truth", id, "bin"))) continue;
     bool made = false;
     for (int attempt = 0; attempt < 60 && !made; ++attempt)
-      made = make_frame(device, folder, id, family, attempt);
+      made = make_frame(device, folder, id, family, attempt, degrees);
     if (!made) std::printf("%d %s: no frame\n", id, families()[size_t(family)].name);
   }
   rtcReleaseDevice(device);

@@ -56,19 +56,13 @@ bool RayCaster::is_open(Vec origin, Vec direction) const {
 
 Frame render(const RayCaster& rays, const Camera& camera, int width, int height, float roll) {
   const size_t n = size_t(width) * size_t(height);
-  Frame f{width,
-          height,
-          std::vector<char>(n, 0),
-          std::vector<float>(n, 1e10f),
-          {},
-          {},
-          {},
-          {},
-          camera.eye,
-          1,
-          1,
-          camera.ortho_width > 0,
-          1};
+  Frame f{};
+  f.width = width;
+  f.height = height;
+  f.valid.resize(n, 0);
+  f.depth.resize(n, 1e10f);
+  f.eye = camera.eye;
+  f.ortho = camera.ortho_width > 0;
   f.position.resize(n);
   f.normal.resize(n);
   f.facet.resize(n);
@@ -77,6 +71,9 @@ Frame render(const RayCaster& rays, const Camera& camera, int width, int height,
   const Vec level = unit(cross(forward, Vec{0, 0, 1})), above = cross(level, forward);
   const Vec right = level * std::cos(roll) + above * std::sin(roll);
   const Vec up = above * std::cos(roll) - level * std::sin(roll);
+  f.right = right;
+  f.up = up;
+  f.forward = forward;
   const float longer = f.ortho ? camera.ortho_width / 2 : std::tan(camera.fov * kPi / 360);
   f.half_width = longer * std::min(1.f, float(width) / float(height));
   f.half_height = longer * std::min(1.f, float(height) / float(width));

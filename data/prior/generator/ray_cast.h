@@ -36,7 +36,7 @@ struct Frame {
   std::vector<char> valid;
   std::vector<float> depth;  // planar
   std::vector<Vec> position, normal, facet, albedo;
-  Vec eye;
+  Vec eye, right, up, forward;
   float half_width, half_height;  // at depth 1, or in scene units if orthographic
   bool ortho;
   float mean_depth;  // geometric mean over the valid pixels
@@ -52,7 +52,7 @@ struct Truth {
   float moments[9];  // means of V times 1, x, y, z, xy, yz, 3zz-1, xz, xx-yy
   float bounce[3];   // one diffuse bounce in the white world, as irradiance / pi
   float sun;         // 1 if the sun is visible
-  float spare;
+  float before;      // turned frames: the pixel of the frame before; else 0
 };
 struct TruthPlan {
   float radius;  // scene units
