@@ -68,6 +68,7 @@ struct PicturedRay {
 
 }  // namespace
 
+/// Follows rays over the pictures, to the first place that none of them shows.
 class RayFollower {
  public:
   RayFollower(const Scene& scene, float radius)

@@ -19,8 +19,7 @@
 // well: of a point of area A at distance d, rays gather the part pi d^2 / (pi d^2 + A), which
 // bounds what a point can give as the form factor of a disc is bounded, and the march the rest.
 //
-// A solid sends from its back as well, as it does in the march: from the mirror image of its
-// visible side (scene/solids/unseen_side.h), which for a round body is all of its hidden half.
+// A solid sends from its unseen side as well, as it does in the march (scene/solids/unseen_side.h).
 #pragma once
 
 #include <cstddef>
