@@ -155,14 +155,29 @@ TEST(PriorLight, LeansWhatIsMirroredAlongGuessedRays) {
   }
 }
 
-/// The march tells which part of it is guessed: on a floor before a wall that ends at the border
-/// there is one, and the prior changes what comes from there only.
-TEST(PriorLight, OfAMirrorChangesWhereRaysAreGuessed) {
+/// The march tells a prior which part of the mirrored sky comes along guessed rays, and which part
+/// of that the rules let through.
+TEST(PriorLight, IsToldWhatIsMirroredAlongGuessedRays) {
   const Scene scene = room_in(one_sided());
-  const Products found = find(scene, {.ao = true, .specular = true}).products,
-                 rules = find(scene, {.ao = true, .specular = true}, false).products;
-  ASSERT_TRUE(rules.visibility.mirrored_guessed.empty()) << "not looked for without a prior";
-  EXPECT_GT(mean_change(found.specular, rules.specular), 1e-4);
+  Request request{.products = {.ao = true, .specular = true},
+                  .radius = kNoLimit,
+                  .parameters = {{"roughness", 0.5}, {"ior", 1.5}}};
+  const auto estimate = [&] { return bitmask_method().estimate(scene, request, {}).visibility; };
+  ASSERT_TRUE(estimate().mirrored_guessed.empty()) << "not looked for without a prior";
+  std::optional<PriorField> field;
+  request.ask_prior = ask_prior({std::nullopt, request.radius, request.seed}, field);
+  const LightVisibility found = estimate();
+  double sum = 0, open = 0, count = 0;
+  for_each_surface(scene, [&](std::size_t i, const glm::vec3&) {
+    const float guessed = found.mirrored_guessed[i], part = found.mirrored_guessed_open[i];
+    ASSERT_TRUE(guessed >= 0 && guessed <= 1.00001f) << guessed;
+    ASSERT_TRUE(part >= 0 && part <= guessed + 1e-5f) << part << " of " << guessed;
+    sum += double(guessed), open += double(part), count += 1;
+  });
+  EXPECT_GT(sum / count, 0.05);
+  EXPECT_LT(sum / count, 0.95);
+  EXPECT_GT(open, 0.05 * sum);
+  EXPECT_LT(open, 0.95 * sum);
 }
 
 /// Of what no surface in the frame hides, all that the prior finds open is open for the sun.
