@@ -132,7 +132,7 @@ class Senders {
   /// the shown surface; as ends_of_rays() of rays/unseen_side-inl.h.
   std::optional<glm::vec3> normal_behind(int x, int y) const {
     const Interleaving& layout = scene_.layout;
-    const auto& [depths, thicknesses] = scene_.layers.front();
+    const InterleavedPlane &depths = scene_.depth(), &thicknesses = scene_.layers.front().thickness;
     const auto nearness = [&](float depth) { return scene_.orthographic ? -depth : 1 / depth; };
     const auto end_of = [&](std::ptrdiff_t i) {
       return scene_.orthographic ? depths[i] + thicknesses[i] : depths[i] * (1 + thicknesses[i]);

@@ -40,7 +40,7 @@ HWY_INLINE V lesser_slope(V before, V after) {
 
 /// normal_behind() of rays/emitters.cpp does the same for one pixel.
 HWY_INLINE EndsOfRays ends_of_rays(const MarchScene& scene, const MarchReceiver& p) {
-  const auto& [depths, thicknesses] = scene.layers.front();
+  const InterleavedPlane &depths = scene.depth(), &thicknesses = scene.layers.front().thickness;
   const V one = set(1), none_there = set(std::numeric_limits<float>::infinity());
   const auto nearness = [&](V depth)
                             HWY_ATTR { return scene.orthographic ? hn::Neg(depth) : one / depth; };
