@@ -118,19 +118,19 @@ class RayFollower {
     const glm::mat3 frame = frame_about(surfaces_[pixel].normal);
     for (int k = samples.first; k < samples.first + samples.count; ++k) {
       const auto unseen = first_unseen(
-          pixel, cosine_direction(frame, sobol_point(std::uint32_t(k), samples.seed)), k * kSpread);
+          pixel, cosine_direction(frame, sobol_point(std::uint32_t(k), samples.seed)), k);
       if (unseen) on_guessed(*unseen);
     }
   }
 
-  /// The first unseen place that a ray passed, if it is guessed.
-  std::optional<Unseen> first_unseen(std::size_t pixel, const glm::vec3& to, int set) const {
+  /// The first unseen place that the k-th ray of a pattern passed, if it is guessed.
+  std::optional<Unseen> first_unseen(std::size_t pixel, const glm::vec3& to, int k) const {
     const Surfel& s = surfaces_[pixel];
     const float above =
         kAboveRoundings * s.rounding + kAboveFootprints * footprint_.at(-s.position.z);
     const glm::vec3 to_viewer =
         direction_to_viewer(s.position, scene_.geometry.camera.orthographic);
-    return follow(pictured(s.position + above * s.normal, to), s.normal, set,
+    return follow(pictured(s.position + above * s.normal, to), s.normal, k * kSpread,
                   glm::dot(to, to_viewer) > kTowardsCamera);
   }
 
@@ -317,8 +317,8 @@ GuessedRays::GuessedRays(const Scene& scene, float radius) {
 
 GuessedRays::~GuessedRays() = default;
 
-bool GuessedRays::is_guessed(std::size_t pixel, const glm::vec3& to, int set) const {
-  return rays_->first_unseen(pixel, to, set).has_value();
+bool GuessedRays::is_guessed(std::size_t pixel, const glm::vec3& to, int k) const {
+  return rays_->first_unseen(pixel, to, k).has_value();
 }
 
 Plane<float> guessed_shares(const Scene& scene, const Window& part, float radius, unsigned seed,

@@ -73,9 +73,9 @@ class GuessedRays {
   GuessedRays(const Scene& scene, float radius);
   ~GuessedRays();
 
-  /// Whether a ray from a pixel of the geometry is guessed. `set` selects the places along it that
-  /// are looked at.
-  bool is_guessed(std::size_t pixel, const glm::vec3& to, int set) const;
+  /// Whether a ray from a pixel of the geometry is guessed, the k-th of a pattern: others look at
+  /// other places along their way.
+  bool is_guessed(std::size_t pixel, const glm::vec3& to, int k) const;
 
  private:
   std::unique_ptr<const class RayFollower> rays_;

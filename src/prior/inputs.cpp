@@ -116,7 +116,7 @@ void PriorInputs::find_means(double aspect) {
         if (is_surface) sums.add_surface(values);
       };
       count(frame);
-      // From the left and from the top, of the whole.
+      // Shares of the frame to the left and above.
       const double right = (grid_.first.x + x + 0.5) / grid_.display.x,
                    low = (grid_.first.y + y + 0.5) / grid_.display.y;
       const double inwards[4] = {low, 1 - low, right, 1 - right};

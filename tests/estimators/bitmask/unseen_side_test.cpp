@@ -38,6 +38,18 @@ const glm::dvec3 kCentre(0, 0, 0.6);
 constexpr double kRadius = 0.6;
 constexpr float kAlbedo = 0.8f;
 
+/// Light and one bounce of what the scene's lamps give.
+Products lit(const Scene& scene) {
+  return bitmask_method().estimate(scene,
+                                   {.products = {.ao = true, .direct = true, .bounce = true},
+                                    .radius = kNoLimit,
+                                    .bounces = 1,
+                                    .slices = 12,
+                                    .steps = 512,
+                                    .extend_offscreen = false},
+                                   {});
+}
+
 /// A ball on a floor, seen obliquely from above.
 struct BallOnFloor {
   Surface ball = sphere(kCentre, kRadius);
@@ -87,15 +99,7 @@ TEST(UnseenSide, SendsWhatALampNearbyGivesIt) {
     scene.solids = guess_solids(of.geometry);
     const auto lamp = of.lamp_at(c.position);
     scene.light.sources = {lamp};
-    const Products out =
-        bitmask_method().estimate(scene,
-                                  {.products = {.ao = true, .direct = true, .bounce = true},
-                                   .radius = kNoLimit,
-                                   .bounces = 1,
-                                   .slices = 12,
-                                   .steps = 512,
-                                   .extend_offscreen = false},
-                                  {});
+    const Products out = lit(scene);
     double sum = 0, exact = 0;
     int count = 0;
     for (int y = 0; y < kWindow.height(); y += 2) {
@@ -168,15 +172,7 @@ TEST(UnseenSide, OfABoxIsWhatItsDepthSays) {
     Scene scene = scene_of(of.geometry, Environment::constant(glm::vec3(0)), kAlbedo);
     scene.solids = guess_solids(of.geometry);
     scene.light.sources = {of.lamp};
-    const Products out =
-        bitmask_method().estimate(scene,
-                                  {.products = {.ao = true, .direct = true, .bounce = true},
-                                   .radius = kNoLimit,
-                                   .bounces = 1,
-                                   .slices = 12,
-                                   .steps = 512,
-                                   .extend_offscreen = false},
-                                  {});
+    const Products out = lit(scene);
     double sum = 0, exact = 0, square = 0;
     int count = 0;
     for (int y = 0; y < kWindow.height(); y += 2) {
@@ -239,14 +235,7 @@ struct WallBehindScreen {
     Scene scene = scene_of(geometry, Environment::constant(glm::vec3(0)), kAlbedo);
     scene.solids = solids;
     scene.light.sources = {make_source(lamp, {camera.rotation, camera.origin}, 0.005)};
-    const Products out = bitmask_method().estimate(scene,
-                                                   {.products = {.ao = true, .bounce = true},
-                                                    .radius = kNoLimit,
-                                                    .bounces = 1,
-                                                    .slices = 12,
-                                                    .steps = 512,
-                                                    .extend_offscreen = false},
-                                                   {});
+    const Products out = lit(scene);
     glm::dvec2 mean(0);
     for (int x = 86; x < 106; ++x)
       mean += glm::dvec2(out.bounce(x, 100).x, out.bounce(x, 46).x) / 20.0;

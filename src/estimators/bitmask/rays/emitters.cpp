@@ -182,8 +182,7 @@ class Senders {
     Side out;
     out.light = light - level_;
     out.point.position = is_back ? front - through * view : front;
-    const glm::vec3 mirrored = unseen_normal(normal, view);
-    out.point.normal = is_back ? behind.value_or(mirrored) : normal;
+    out.point.normal = is_back ? behind.value_or(unseen_normal(normal, view)) : normal;
     out.point.per_radiance = out.light / light * area;
     out.point.power = out.light / light * area * radiance;
     out.point.area = area;

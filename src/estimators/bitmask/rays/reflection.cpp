@@ -34,9 +34,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
-/// Neighbouring rays look at different places, see GuessedRays.
-constexpr int kSpread = 5;
-
 /// What a facet of each lane, chosen by one point of the unit square, mirrors to the viewer: the
 /// direction, unit; the share of the light from there that other facets do not block, 0 below the
 /// surface; the cosine to the facet; and the density of the direction.
@@ -274,9 +271,8 @@ void reflection(const ReflectionJob& job, const Window& part) {
             light.add<kOrthographic>(job, p, f0_at(*job.light, scene, place), m, a, beyond);
         const int rank = SlicePattern::rank(member_at(scene, place));
         if (job.light->guesses && is_looked_at(rank, k))
-          light.add_guess(
-              seen, a.share,
-              guessed_rays(*job.light->guesses, job, p, m, kSpread * (rank * job.rays + k)));
+          light.add_guess(seen, a.share,
+                          guessed_rays(*job.light->guesses, job, p, m, rank * job.rays + k));
         mirrors->set_light(i, light);
       });
     }
