@@ -37,6 +37,15 @@ double reference_weight(const Geometry& g, int x, int y, int dx, int dy) {
   return ramp(distance > 0 ? height / (0.3 * distance) : 0) * ramp(turn / 0.2);
 }
 
+/// v of the pixel (dx, dy) from (x, y); both show a surface.
+double reference_resemblance(const Geometry& g, int x, int y, int dx, int dy) {
+  const Surfel p = g.surfaces(x, y), q = g.surfaces(x + dx, y + dy);
+  const glm::dvec3 n(p.normal), to_q = glm::dvec3(q.position) - glm::dvec3(p.position);
+  const double distance = glm::length(to_q),
+               sine = distance > 0 ? std::abs(glm::dot(to_q, n)) / distance : 0;
+  return std::clamp(glm::dot(n, glm::dvec3(q.normal)), 0.0, 1.0) * (1 - sine);
+}
+
 double brightness(double v) { return v; }
 double brightness(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3; }
 
@@ -70,19 +79,24 @@ Value reference(const Plane<T>& in, const Geometry& g, int pattern_size, int x, 
     return finished(sum);
   }
   const int half = pattern_size / 2;
-  double weights = 0;
-  Value sum(0);
-  for (int dy = -half; dy <= half; ++dy) {
-    for (int dx = -half; dx <= half; ++dx) {
-      const int qx = x + dx, qy = y + dy;
-      if (!surface_at(g, qx, qy)) continue;
-      const double border = (std::abs(dx) == half ? 0.5 : 1) * (std::abs(dy) == half ? 0.5 : 1),
-                   weight = border * reference_weight(g, x, y, dx, dy);
-      weights += weight;
-      sum += weight * Value(in(qx, qy));
+  const auto window_sum = [&](const auto& weight, Value& sum) {
+    double weights = 0;
+    for (int dy = -half; dy <= half; ++dy) {
+      for (int dx = -half; dx <= half; ++dx) {
+        if (!surface_at(g, x + dx, y + dy)) continue;
+        const double border = (std::abs(dx) == half ? 0.5 : 1) * (std::abs(dy) == half ? 0.5 : 1),
+                     w = border * weight(g, x, y, dx, dy);
+        weights += w;
+        sum += w * Value(in(x + dx, y + dy));
+      }
     }
-  }
-  return finished(sum / weights);
+    return weights;
+  };
+  Value sum(0), resembling(0);
+  const double weights = window_sum(reference_weight, sum),
+               more = window_sum(reference_resemblance, resembling),
+               e = 0.8 * std::max(1 / weights - 8.0 / (3 * pattern_size * pattern_size), 0.0);
+  return finished((sum + e * resembling) / (weights + e * more));
 }
 
 /// Bounce light, which a second pass holds to what ao leaves.

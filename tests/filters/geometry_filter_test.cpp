@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "support/analytic_scene.h"
@@ -140,6 +142,26 @@ TEST(GeometryFilter, DoesNotCrossEdges) {
     step.ao[i] = corner.surfaces[i].normal.y > 0.5f ? 1.0f : 0.0f;
   const Products walls = filter_products(find_filter("geometry"), step, corner.surfaces, 4);
   for (std::size_t i = 0; i < step.ao.size(); ++i) EXPECT_EQ(walls.ao[i], step.ao[i]);
+}
+
+TEST(GeometryFilter, SmoothsLeavesThatAreAsSmallAsPixels) {
+  // Each pixel shows a leaf that leans within 40 degrees to some side, and is nearer or farther
+  // than the next ones. Few share its surface: their mean is off by 0.154 RMS.
+  Geometry g =
+      geometry_of(plane({}, {0, 0, 1}),
+                  look_at(camera_from_fov(40, kWindow, 1), {0, 0, 5}, {}, {0, 1, 0}), kWindow);
+  int pixel = 0;
+  g.surfaces.change_each([&](Surfel& s) {
+    const int x = pixel % kWindow.width(), y = pixel / kWindow.width();
+    s.position.z += 0.02f * float((x + y) % 2);
+    s.normal = glm::normalize(glm::vec3(float(x % 3 - 1), float(y % 3 - 1), 1.5f));
+    ++pixel;
+  });
+  const Products out =
+      filter_products(find_filter("geometry"), noise_of_a_pattern(g), g.surfaces, 4);
+  double sum2 = 0;
+  for (const float ao : out.ao.pixels) sum2 += (double(ao) - 0.5) * (double(ao) - 0.5);
+  EXPECT_LT(std::sqrt(sum2 / double(out.ao.size())), 0.11);
 }
 
 TEST(GeometryFilter, LeavesTheBackgroundAlone) {
