@@ -7,7 +7,7 @@ OUTPUTS = 5  # shift of the logit, moments 1 (right, forward, up), spread
 
 
 class Prior(torch.nn.Module):
-    def __init__(self, inputs, hidden=(48, 32)):
+    def __init__(self, inputs, hidden):
         super().__init__()
         self.register_buffer("mean", torch.zeros(inputs))
         self.register_buffer("inverse_deviation", torch.ones(inputs))
@@ -24,6 +24,26 @@ class Prior(torch.nn.Module):
         for layer in self.layers[:-1]:
             h = torch.relu(layer(h))
         return self.layers[-1](h)
+
+
+def mean_of(nets):
+    """One network whose outputs are the means of those of networks with the same inputs"""
+    parts = [net.layers for net in nets]
+    both = Prior(nets[0].layers[0].in_features, tuple(
+        sum(layer.out_features for layer in same) for same in zip(*parts)
+    )[:-1])
+    both.mean[:], both.inverse_deviation[:] = nets[0].mean, nets[0].inverse_deviation
+    blocks = lambda same: torch.block_diag(*[layer.weight for layer in same])
+    joined = lambda same: torch.cat([layer.bias for layer in same])
+    first, *inner, last = zip(*parts)
+    with torch.no_grad():
+        both.layers[0].weight[:] = torch.cat([layer.weight for layer in first])
+        both.layers[0].bias[:] = joined(first)
+        for layer, same in zip(both.layers[1:-1], inner):
+            layer.weight[:], layer.bias[:] = blocks(same), joined(same)
+        both.layers[-1].weight[:] = torch.cat([layer.weight for layer in last], 1) / len(nets)
+        both.layers[-1].bias[:] = sum(layer.bias for layer in last) / len(nets)
+    return both.eval()
 
 
 def answer(out, ao, guessed):
