@@ -161,8 +161,9 @@ class TileFilter {
 
   /// Adds to the weights of row `k` of the two, whose sum is `sum`, for what resembles `p`.
   HWY_NOINLINE void add_resembling(int x, int y, const Shown& p, int k, V& sum) {
-    const V share =
-        set(kResembling) * hn::Max(set(1) / hn::Max(sum, set(1)) - set(1 / enough()), set(0));
+    // A surface has a weight of 1 for itself, if its normal is one.
+    const V share = hn::IfThenElseZero(
+        sum >= set(1), set(kResembling) * hn::Max(set(1) / sum - set(1 / enough()), set(0)));
     for (int dy = -half_; dy <= half_; ++dy) {
       float* weight = weights_.get() + ((dy + half_ + k) * window() * 2 + k) * kLanes;
       for (int dx = -half_; dx <= half_; ++dx, weight += 2 * kLanes) {

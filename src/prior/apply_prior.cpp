@@ -191,7 +191,7 @@ void write_rows(const PriorField& field, const Geometry& geometry, float offscre
       [&](std::size_t i, int count, const Surfels& surfels, const V* of) HWY_ATTR {
         store_first(count, hn::IfThenElseZero(surfels.surface, of[0]), &learned.change[i]);
         const V rules = set(offscreen_sun),
-                past = hn::MulAdd(of[1] - rules, set(kPartOfLight), rules);
+                past = hn::MulAdd(of[1] - rules, set(kPartOfSun), rules);
         store_first(count, hn::IfThenElseZero(surfels.surface, past), &learned.offscreen_sun[i]);
       });
 }
@@ -243,7 +243,7 @@ void amend_rows(const PriorField& field, const Scene& scene, int y0, int y1, Pro
   // Visibility for light with directions lies halfway between open borders and surfaces that go on.
   const bool has_directions = light.order > 0;
   const V halfway = set(has_directions ? 0.5f : 0.0f),
-          part = set(has_directions ? kPartOfLight : 1.0f);
+          part = set(has_directions ? kPartOfSky : 1.0f);
   between_squares<6>(
       s, scene.geometry,
       {&s.guesses, &field.visibility_bias, &field.open_border_gain, &field.moment[0],

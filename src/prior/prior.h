@@ -21,7 +21,7 @@
 //   (c0 (ao' - ao_half) + c . (m' - m)) / E,   ao_half = ao + opens / 2
 //
 // c0 and c are the first two bands of a sky. Light with directions takes a part of this change, see
-// kPartOfLight. Over families of made scenes that the training never
+// kPartOfSky. Over families of made scenes that the training never
 // saw, the error of light is 0.58 of that by rules with ao' alone, and 0.54 with moments. The bent
 // normal leans as m does: mean of V d = bent |m| + m' - m, |m| that of a cone with ao_half. Its
 // mean error there falls from 10 degrees to 8 (things on a plane), and from 25 to 21 (courts).
@@ -61,11 +61,11 @@ inline constexpr int kPriorReach = 48;
 /// s is held to kLeastShare..1 - kLeastShare.
 inline constexpr float kLeastShare = 0.02f;
 
-/// The part of its change that the light of maps takes, and of how much of a sun comes past the
+/// The part of its change that the sky's light takes, and the share of a sun that comes past the
 /// border: in scenes that were built by others than those that trained it (data/blender/proof.py),
-/// direct light by the prior alone is no better than by rules, and four times as wrong in one of
-/// them; with half of the change, no scene is worse by more than 8 %.
-inline constexpr float kPartOfLight = 0.5f;
+/// direct light by the prior alone is little better than by rules, and four times as wrong in one
+/// of them; with half of the change of the sky one is worse by 8 %, with a quarter none.
+inline constexpr float kPartOfSky = 0.25f, kPartOfSun = 0.5f;
 
 /// The part of its change that ao takes within a radius: kPartWithinRadius, and more with one that
 /// is many times as large as the frame at its median depth; all of it without a radius. Of the same

@@ -21,7 +21,7 @@ struct RecordedErrors {
 };
 
 inline const std::vector<RecordedErrors> kRecordedErrors = {
-    {"bitmask", {0.0333, 0.0352, 0.1135, 0.2577}, {0.0341, 0.0211, 0.0511, 0.4800}},
+    {"bitmask", {0.0333, 0.0352, 0.1130, 0.2577}, {0.0341, 0.0211, 0.0440, 0.4800}},
     {"trace", {0.0547, 0.0713, 0.1079, 0.5628}, {0.0434, 0.0552, 0.0553, 0.2280}},
     {"ssdo", {0.1199, 0.2274, 0.2538, 1.1030}, {0.0665, 0.1286, 0.1790, 0.7191}},
     {"ssao", {0.1548, 0.2155, 0.2518}, {0.1028, 0.2074, 0.2023}},
@@ -34,7 +34,7 @@ inline const std::vector<RecordedErrors> kRecordedErrors = {
 };
 
 /// Of the default method on the room corner with 25 % of overscan on each side.
-inline constexpr TruthErrors kRecordedRoomCornerOverscan = {0.0356, 0.0198, 0.0227, 0.1546};
+inline constexpr TruthErrors kRecordedRoomCornerOverscan = {0.0356, 0.0198, 0.0226, 0.1546};
 
 /// Means over five further scenes of what the default method is wrong by when it knows this much,
 /// in the units of TruthErrors; `white` is ao without a radius. `rank_guessed`: rank correlation of
@@ -48,15 +48,15 @@ struct RecordedKnownGeometry {
 };
 
 inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
-    {"the frame alone", "gbuffer.exr", {}, 0.0563, 0.0664, 0.0701, 0.2410, 0.3278, 0.81},
-    {"with overscan", "overscan.exr", {}, 0.0534, 0.0479, 0.0505, 0.2658, 0.2853, 0.86},
+    {"the frame alone", "gbuffer.exr", {}, 0.0563, 0.0664, 0.0701, 0.2379, 0.3278, 0.81},
+    {"with overscan", "overscan.exr", {}, 0.0534, 0.0479, 0.0505, 0.2758, 0.2853, 0.86},
     {"with a panorama",
      "gbuffer.exr",
      {"also_pano.exr"},
      0.0540,
      0.0494,
      0.0410,
-     0.1380,
+     0.1390,
      0.2304,
      0.83},
     {"with overscan and four views",
@@ -65,7 +65,7 @@ inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
      0.0484,
      0.0398,
      0.0352,
-     0.1247,
+     0.1241,
      0.2099,
      0.81},
 };
@@ -73,16 +73,16 @@ inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
 /// The same of the small scene of data/truth/corner, which every clone has. Its blocks are too few
 /// to rank what is guessed.
 inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometryOfASmallScene = {
-    {"the frame alone", "gbuffer.exr", {}, 0.0466, 0.0690, 0.1299, 0.2824, 0.3556},
-    {"with overscan", "overscan.exr", {}, 0.0450, 0.0365, 0.0336, 0.0916, 0.3185},
-    {"with a panorama", "gbuffer.exr", {"also_pano.exr"}, 0.0458, 0.0387, 0.0334, 0.1157, 0.2423},
+    {"the frame alone", "gbuffer.exr", {}, 0.0466, 0.0690, 0.1299, 0.2482, 0.3556},
+    {"with overscan", "overscan.exr", {}, 0.0450, 0.0365, 0.0336, 0.1032, 0.3185},
+    {"with a panorama", "gbuffer.exr", {"also_pano.exr"}, 0.0458, 0.0387, 0.0334, 0.1192, 0.2423},
     {"with overscan and four views",
      "overscan.exr",
      {"also_left.exr", "also_pano.exr", "also_right.exr", "also_top.exr"},
      0.0450,
      0.0270,
      0.0229,
-     0.0913,
+     0.0928,
      0.2432},
 };
 
