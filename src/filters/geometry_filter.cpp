@@ -23,7 +23,7 @@
 //
 // A plane has W = T^2, and where straight edges meet in a corner of it W is 25/64 of that at least,
 // so that only thin things change. On path-traced grass and leaves ao is off by 2 to 3 % less, for
-// any e from 0.4 to 1.5.
+// any e from 0.8 to 1.5.
 //
 // For T = 8 this would be 81 neighbours. But that window is the mean of four windows of T = 4 whose
 // centres are (+-2, +-2) pixels away, so a second pass computes it from the result of the first:
@@ -66,7 +66,7 @@ HWY_BEFORE_NAMESPACE();
 namespace ssdo::HWY_NAMESPACE {
 
 constexpr float kStepTolerance = 0.15f;  ///< r; measured, with the 1/4
-constexpr float kResembling = 0.8f;      ///< e
+constexpr float kResembling = 1.5f;      ///< e
 
 class TileFilter {
  public:

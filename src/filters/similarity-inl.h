@@ -43,14 +43,15 @@ HWY_INLINE V similarity(const Shown& p, const Shown& q, const Opposite& opposite
   return turn * plane_ramp(above, rounding, distance2, p, opposite());
 }
 
-/// v(p, q): how far q faces as p does, and lies in its plane; 0 where one of them shows no surface.
-/// Wider than w, which other surfaces do not pass.
+/// v(p, q): how far both face alike, and each lies in the other's plane; 0 where one of them shows
+/// no surface. Wider than w, which other surfaces do not pass.
+/// A backdrop far behind p may lie in the plane of p, but not p in that of the backdrop.
 HWY_INLINE V resemblance(const Shown& p, const Shown& q) {
-  const V zero = set(0), one = set(1);
   const V3 to_q = q.position - p.position;
   const V distance2 = dot(to_q, to_q);
-  const V sine = hn::Abs(above_plane(p, q)) / hn::Sqrt(hn::Max(distance2, set(1e-30f)));
-  return saturate(dot(p.normal, q.normal)) * hn::Max(one - sine, zero);
+  const V sine = hn::Max(hn::Abs(above_plane(p, q)), hn::Abs(above_plane(q, p))) /
+                 hn::Sqrt(hn::Max(distance2, set(1e-30f)));
+  return saturate(dot(p.normal, q.normal)) * saturate(set(1) - sine);
 }
 
 }  // namespace ssdo::HWY_NAMESPACE

@@ -40,10 +40,12 @@ double reference_weight(const Geometry& g, int x, int y, int dx, int dy) {
 /// v of the pixel (dx, dy) from (x, y); both show a surface.
 double reference_resemblance(const Geometry& g, int x, int y, int dx, int dy) {
   const Surfel p = g.surfaces(x, y), q = g.surfaces(x + dx, y + dy);
-  const glm::dvec3 n(p.normal), to_q = glm::dvec3(q.position) - glm::dvec3(p.position);
+  const glm::dvec3 n(p.normal), n_q(q.normal),
+      to_q = glm::dvec3(q.position) - glm::dvec3(p.position);
   const double distance = glm::length(to_q),
-               sine = distance > 0 ? std::abs(glm::dot(to_q, n)) / distance : 0;
-  return std::clamp(glm::dot(n, glm::dvec3(q.normal)), 0.0, 1.0) * (1 - sine);
+               off = std::max(std::abs(glm::dot(to_q, n)), std::abs(glm::dot(to_q, n_q))),
+               sine = distance > 0 ? off / distance : 0;
+  return std::clamp(glm::dot(n, n_q), 0.0, 1.0) * (1 - sine);
 }
 
 double brightness(double v) { return v; }
@@ -95,7 +97,7 @@ Value reference(const Plane<T>& in, const Geometry& g, int pattern_size, int x, 
   Value sum(0), resembling(0);
   const double weights = window_sum(reference_weight, sum),
                more = window_sum(reference_resemblance, resembling),
-               e = 0.8 * std::max(1 / weights - 8.0 / (3 * pattern_size * pattern_size), 0.0);
+               e = 1.5 * std::max(1 / weights - 8.0 / (3 * pattern_size * pattern_size), 0.0);
   return finished((sum + e * resembling) / (weights + e * more));
 }
 

@@ -21,11 +21,11 @@ struct RecordedErrors {
 };
 
 inline const std::vector<RecordedErrors> kRecordedErrors = {
-    {"bitmask", {0.0333, 0.0352, 0.1130, 0.2577}, {0.0341, 0.0211, 0.0440, 0.4800}},
+    {"bitmask", {0.0334, 0.0352, 0.1130, 0.2577}, {0.0341, 0.0211, 0.0440, 0.4800}},
     {"trace", {0.0547, 0.0713, 0.1079, 0.5628}, {0.0434, 0.0552, 0.0553, 0.2280}},
-    {"ssdo", {0.1199, 0.2274, 0.2538, 1.1030}, {0.0665, 0.1286, 0.1790, 0.7191}},
+    {"ssdo", {0.1199, 0.2274, 0.2538, 1.1029}, {0.0665, 0.1286, 0.1790, 0.7191}},
     {"ssao", {0.1548, 0.2155, 0.2518}, {0.1028, 0.2074, 0.2023}},
-    {"ssao-range", {0.1401, 0.2250, 0.2565}, {0.1111, 0.1599, 0.1751}},
+    {"ssao-range", {0.1401, 0.2250, 0.2565}, {0.1111, 0.1599, 0.1752}},
     {"ssao-fade", {0.1115, 0.2012, 0.2633}, {0.0620, 0.1082, 0.1925}},
     {"hbao", {0.0886, 0.1246, 0.2558}, {0.0572, 0.0798, 0.1585}},
     {"gtao", {0.1563, 0.2128, 0.2507}, {0.1126, 0.2379, 0.2524}},
@@ -48,16 +48,16 @@ struct RecordedKnownGeometry {
 };
 
 inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
-    {"the frame alone", "gbuffer.exr", {}, 0.0563, 0.0664, 0.0701, 0.2379, 0.3278, 0.81},
-    {"with overscan", "overscan.exr", {}, 0.0534, 0.0479, 0.0505, 0.2758, 0.2853, 0.86},
+    {"the frame alone", "gbuffer.exr", {}, 0.0563, 0.0664, 0.0701, 0.2381, 0.3279, 0.81},
+    {"with overscan", "overscan.exr", {}, 0.0534, 0.0479, 0.0506, 0.2760, 0.2854, 0.86},
     {"with a panorama",
      "gbuffer.exr",
      {"also_pano.exr"},
      0.0540,
      0.0494,
      0.0410,
-     0.1390,
-     0.2304,
+     0.1392,
+     0.2305,
      0.83},
     {"with overscan and four views",
      "overscan.exr",
@@ -65,7 +65,7 @@ inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
      0.0484,
      0.0398,
      0.0352,
-     0.1241,
+     0.1243,
      0.2099,
      0.81},
 };
@@ -73,17 +73,17 @@ inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometry = {
 /// The same of the small scene of data/truth/corner, which every clone has. Its blocks are too few
 /// to rank what is guessed.
 inline const std::vector<RecordedKnownGeometry> kRecordedKnownGeometryOfASmallScene = {
-    {"the frame alone", "gbuffer.exr", {}, 0.0466, 0.0690, 0.1299, 0.2482, 0.3556},
-    {"with overscan", "overscan.exr", {}, 0.0450, 0.0365, 0.0336, 0.1032, 0.3185},
-    {"with a panorama", "gbuffer.exr", {"also_pano.exr"}, 0.0458, 0.0387, 0.0334, 0.1192, 0.2423},
+    {"the frame alone", "gbuffer.exr", {}, 0.0464, 0.0690, 0.1299, 0.2482, 0.3556},
+    {"with overscan", "overscan.exr", {}, 0.0448, 0.0365, 0.0336, 0.1031, 0.3186},
+    {"with a panorama", "gbuffer.exr", {"also_pano.exr"}, 0.0456, 0.0387, 0.0334, 0.1192, 0.2424},
     {"with overscan and four views",
      "overscan.exr",
      {"also_left.exr", "also_pano.exr", "also_right.exr", "also_top.exr"},
-     0.0450,
+     0.0448,
      0.0270,
      0.0229,
      0.0928,
-     0.2432},
+     0.2433},
 };
 
 /// Of one lamp of data/truth/corner in a black world, relative to the mean of its light.
@@ -97,12 +97,12 @@ struct RecordedLamp {
 inline const std::vector<std::string> kFourViews = {"also_left.exr", "also_pano.exr",
                                                     "also_right.exr", "also_top.exr"};
 inline const std::vector<RecordedLamp> kRecordedLamps = {
-    {"point", "gbuffer.exr", {}, 0.1927, 0.3604},
+    {"point", "gbuffer.exr", {}, 0.1927, 0.3605},
     {"area", "gbuffer.exr", {}, 0.1367, 0.3822},
-    {"spot", "gbuffer.exr", {}, 0.1337, 0.3104},
+    {"spot", "gbuffer.exr", {}, 0.1337, 0.3102},
     {"point", "overscan.exr", kFourViews, 0.1527, 0.3631},
     {"area", "overscan.exr", kFourViews, 0.1321, 0.3829},
-    {"spot", "overscan.exr", kFourViews, 0.1141, 0.2337},
+    {"spot", "overscan.exr", kFourViews, 0.1141, 0.2334},
 };
 
 }  // namespace ssdo::test
