@@ -23,7 +23,7 @@ build_packages=(g++ cmake ninja-build pkg-config libopenexr-dev libopenimageio-d
   libtomlplusplus-dev)
 test_packages=(libgtest-dev libgmock-dev groff chromium zsh)
 farm_packages=(slurm-wlm munge parallel make debootstrap dpkg-dev file patchelf)  # of tests/farm and tests/package
-fault_packages=(strace)  # of tests/faults
+fault_packages=(strace libopenblas0)  # of tests/faults; OpenBLAS starts threads where OpenCV loads it
 blender_packages=(blender)  # of tests/blender
 
 # A list of tests as a filter of GoogleTest.

@@ -20,6 +20,9 @@ void limit_io_threads(int count) {
   // OpenImageIO starts $CUE_THREADS threads, be they 99999, before another number can be set, and
   // waits for ever where the second of them does not start.
   setenv("OPENIMAGEIO_THREADS", "1", 1);
+  // OpenImageIO brings OpenCV and so BLAS, of which nothing is used here. Where that is OpenBLAS, it
+  // starts a thread for each core, and at the end waits for ever for one that gets no memory.
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
 }
 
 int io_threads() { return most_threads; }
