@@ -81,6 +81,22 @@ void send_light(const BounceInputs& inputs, const LightGroup& light, const Windo
   for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
 }
 
+/// The share of the light from afar in all light is told from one row of the display window in so
+/// many.
+constexpr int kRowsApart = 8;
+
+/// The same of these rows, in the first pass.
+InterleavedVectors sent_by_rows(const BounceInputs& inputs, const LightGroup& light,
+                                const Window& part) {
+  InterleavedVectors sent = inputs.raster.make_color();
+  for_each_row(part.height(), [&](int row) {
+    const int y = part.y0 + row;
+    if ((y + inputs.march.scene.first_y) % kRowsApart == 0)
+      send_light(inputs, light, {part.x0, y, part.x1, y + 1}, nullptr, sent);
+  });
+  return sent;
+}
+
 class BouncePasses {
  public:
   explicit BouncePasses(const BounceInputs& inputs)
@@ -164,19 +180,24 @@ class BouncePasses {
   /// The mean radiance that surfaces send, of the light that comes from afar.
   glm::vec3 sent_by_unshown(BounceState& light, const InterleavedVectors& sent,
                             const Pass& pass) const {
-    const auto mean = [&](const InterleavedVectors& of) {
+    const auto mean = [&](const InterleavedVectors& of, int rows_apart) {
       return mean_sent(march_scene_, scene_.geometry,
-                       {of, pass.of_all, two_sided_, pass.emitters.bright});
+                       {of, pass.of_all, two_sided_, pass.emitters.bright, rows_apart});
     };
-    const glm::vec3 all = mean(sent);
     if (pass.number == 1 && is_lit_) {
       const LightGroup afar = only_from_afar(light.light);
       if (afar.source_indices.size() < light.light.source_indices.size()) {
-        const glm::vec3 part = mean(ssdo::sent_light(in_, afar, pass.lit, nullptr));
+        // Holes send what pixels of other rows send.
+        const bool has_holes = bool(scene_.caster_surfaces);
+        const int apart = has_holes ? 1 : kRowsApart;
+        const glm::vec3 all = mean(sent, apart),
+                        part = mean(has_holes ? ssdo::sent_light(in_, afar, pass.lit, nullptr)
+                                              : sent_by_rows(in_, afar, pass.lit),
+                                    apart);
         for (int c = 0; c < 3; ++c) light.from_afar[c] = all[c] > 0 ? part[c] / all[c] : 0;
       }
     }
-    return light.from_afar * all;
+    return light.from_afar * mean(sent, 1);
   }
 
   /// The lamps of `light` that stand in the scene; `lit`: the pixels that send.

@@ -64,6 +64,7 @@ glm::vec3 mean_sent(const MarchScene& scene, const Geometry& geometry, const Sen
   // By row, so that sums have one order.
   std::vector<glm::dvec4> rows(std::size_t(std::max(shown.height(), 0)), glm::dvec4(0));
   for_each_row(shown.height(), [&](int row) {
+    if ((shown.y0 + row + scene.first_y) % sent.rows_apart != 0) return;
     glm::dvec4& sum = rows[std::size_t(row)];
     for (int x = shown.x0; x < shown.x1; ++x) {
       const std::ptrdiff_t i = scene.layout.index(x, shown.y0 + row);

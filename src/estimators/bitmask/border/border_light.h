@@ -42,6 +42,7 @@ struct SentByAll {
   const InterleavedVectors& of_all;
   bool two_sided;
   float level;
+  int rows_apart;  ///< one row of the display window in so many counts
 };
 
 /// The mean over the surfaces of the display window of what their fronts send, no more than `level`

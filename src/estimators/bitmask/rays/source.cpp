@@ -82,6 +82,7 @@ struct BlockSums {
   alignas(64) float weight[Block::kPixels];    ///< the light of the rays
   alignas(64) float share[Block::kPixels];     ///< the light of the rays that arrive
   alignas(64) float width_px[Block::kPixels];  ///< of penumbras, weighted by the blocked light
+  BlockValues own;                             ///< 1; 0: the rays of another pixel count
 
   HWY_INLINE void clear(int i) {
     for (float* sum : {weight, share, width_px}) store(set(0), sum + i);
@@ -91,6 +92,12 @@ struct BlockSums {
     store(load(weight + i) + light, weight + i);
     store(hn::MulAdd(light, arrives, load(share + i)), share + i);
     store(hn::MulAdd(lost, penumbra_px, load(width_px + i)), width_px + i);
+  }
+
+  /// The share of the light that arrives; 0 where there are no rays.
+  HWY_INLINE V arrives(int i) const {
+    const V all = load(weight + i);
+    return hn::IfThenElseZero(all > set(0), load(share + i) / all);
   }
 };
 
@@ -132,6 +139,26 @@ HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const MarchReceiver&
   return p;
 }
 
+/// Of so many pixels beside each other that show one surface, the first has rays from its unseen
+/// side, and the others take what these find: what unseen sides send is a mean over 4 x 4 pixels
+/// (senders.cpp).
+constexpr int kShareUnseen = 2;
+
+HWY_INLINE int pixels_to_first(const SourceJob& job, const Place& place) {
+  return job.unseen_of ? place.column_phase % kShareUnseen : 0;
+}
+
+/// Whether pixels have rays of their own.
+template <bool kOrthographic>
+HWY_INLINE M has_own_rays(const SourceJob& job, const MarchReceiver& shown) {
+  const int aside = pixels_to_first(job, shown.place);
+  if (aside == 0) return shown.valid;
+  const MarchScene& scene = job.march.scene;
+  const Place first = place_beside(scene.layout, shown.place, -aside, 0);
+  return hn::And(shown.valid,
+                 likeness<kOrthographic>(scene, shown, first.index, -aside, 0) == set(0));
+}
+
 HWY_INLINE V way_in_solid(const SourceJob& job, const MarchReceiver& shown) {
   return job.unseen_of ? unseen_side(*job.unseen_of, shown).clear : set(0);
 }
@@ -148,11 +175,16 @@ void source(const SourceJob& job, const Window& part) {
     for (const PointsOfSource& points : job.points) {
       occluders.clear();
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-        const MarchReceiver shown = load_receiver(scene, place), lit = lit_point(job, shown);
+        const MarchReceiver shown = load_receiver(scene, place);
         const int i = block.first_of(place);
+        const M own = has_own_rays<kOrthographic>(job, shown);
+        sums.own.set_at(i, hn::IfThenElseZero(own, set(1)));
+        rays.light.set_at(i, set(0));
+        if (!any(own)) return;
+        const MarchReceiver lit = lit_point(job, shown);
         const SourcePoints to = points_above(job, points, lit);
         const V light = to.weight * dot(lit.normal, to.to);
-        const M is_lit = hn::And(lit.valid, light > set(0));
+        const M is_lit = hn::And(hn::And(lit.valid, own), light > set(0));
         rays.light.set_at(i, hn::IfThenElseZero(is_lit, light));
         if (!any(is_lit)) return;
         rays.to.set_at(i, to.to);
@@ -167,19 +199,24 @@ void source(const SourceJob& job, const Window& part) {
         const MarchReceiver p = start_of_ray(job, load_receiver(scene, place), rays.to(i));
         const Ray ray = ray_of<kOrthographic>(scene, p, rays, i);
         const RayVisibility a = occluders.visibility(i, p, ray, pass_of(job, place));
-        sums.add(i, rays.light(i), a.share,
-                 penumbra_px<kOrthographic>(job, p, a.blocked_at, ray.length));
+        const V penumbra =
+            job.unseen_of ? set(0) : penumbra_px<kOrthographic>(job, p, a.blocked_at, ray.length);
+        sums.add(i, rays.light(i), a.share, penumbra);
       });
     }
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
       const std::ptrdiff_t i = place.index;
       const int from = block.first_of(place);
-      const V zero = set(0), weight = load(sums.weight + from), arrives = load(sums.share + from),
-              blocked = weight - arrives,
+      if (job.unseen_of) {
+        const int first = from - pixels_to_first(job, place) * kLanes;
+        const M own = sums.own(from) > set(0);
+        return store(hn::IfThenElse(own, sums.arrives(from), sums.arrives(first)),
+                     job.found->unseen, i);
+      }
+      const V zero = set(0), weight = load(sums.weight + from),
+              blocked = weight - load(sums.share + from),
               widths = load(sums.width_px + from) * set(1 / kPenumbraUnit);
-      const V share = hn::IfThenElseZero(weight > zero, arrives / weight);
-      if (job.unseen_of) return store(share, job.found->unseen, i);
-      store(share, job.found->share, i);
+      store(sums.arrives(from), job.found->share, i);
       store(weight / set(float(job.points.size())), job.found->weight, i);
       store(hn::IfThenElseZero(blocked > zero, widths / blocked), job.found->width, i);
     });
