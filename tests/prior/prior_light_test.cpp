@@ -243,6 +243,24 @@ TEST(PriorLight, OfALampIsNotSentByWhatIsNotShown) {
   EXPECT_NE(found.ao.pixels, rules.ao.pixels);
 }
 
+/// Beside a lamp, the light from afar is told from some rows of the frame.
+TEST(PriorLight, FromAfarIsSentByWhatIsNotShownAlsoBesideALamp) {
+  const ProductSet asked{.ao = true, .bounce = true};
+  Scene scene = room_in(Environment::constant(glm::vec3(0.5f, 1, 2)));
+  const Plane<glm::vec3> of_sky = find(scene, asked).products.bounce;
+  const glm::dvec3 at = scene.geometry.camera.to_camera({0.5, 0, 2});
+  scene.light.sources.push_back(std::make_shared<PointSource>(glm::vec3(at)));
+  const Plane<glm::vec3> of_both = find(scene, asked).products.bounce;
+  scene.light = room_in(Environment::constant(glm::vec3(0))).light;
+  scene.light.sources.push_back(std::make_shared<PointSource>(glm::vec3(at)));
+  const Plane<glm::vec3> of_lamp = find(scene, asked).products.bounce;
+  glm::dvec3 sum(0), more(0);
+  for_each_surface(scene, [&](std::size_t i, const glm::vec3&) {
+    sum += of_sky[i], more += of_both[i] - of_lamp[i];
+  });
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(more[c], sum[c], 0.01 * sum[c]);
+}
+
 /// Within a radius ao takes half of the change, and more with a radius far larger than the frame.
 TEST(PriorLight, OfALargeRadiusIsNearlyThatWithoutOne) {
   const Geometry geometry = room_in(sunny()).geometry;

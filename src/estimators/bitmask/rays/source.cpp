@@ -139,24 +139,25 @@ HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const MarchReceiver&
   return p;
 }
 
-/// Of so many pixels beside each other that show one surface, the first has rays from its unseen
-/// side, and the others take what these find: what unseen sides send is a mean over 4 x 4 pixels
-/// (senders.cpp).
-constexpr int kShareUnseen = 2;
+/// Of so many pixels beside each other, the third has rays from its unseen side, and those of its
+/// surface take what these find, if it is lit: what unseen sides send is a mean over 4 x 4 pixels
+/// anyhow (senders.cpp).
+constexpr int kShareUnseen = 4;
 
-HWY_INLINE int pixels_to_first(const SourceJob& job, const Place& place) {
-  return job.unseen_of ? place.column_phase % kShareUnseen : 0;
+/// From the pixel whose rays count.
+HWY_INLINE int pixels_aside(const SourceJob& job, const Place& place) {
+  return job.unseen_of ? place.column_phase % kShareUnseen - kShareUnseen / 2 : 0;
 }
 
-/// Whether pixels have rays of their own.
+/// Whether pixels have rays of their own. `lit`: whether the pixel whose rays count has rays.
 template <bool kOrthographic>
-HWY_INLINE M has_own_rays(const SourceJob& job, const MarchReceiver& shown) {
-  const int aside = pixels_to_first(job, shown.place);
+HWY_INLINE M has_own_rays(const SourceJob& job, const MarchReceiver& shown, M lit) {
+  const int aside = pixels_aside(job, shown.place);
   if (aside == 0) return shown.valid;
   const MarchScene& scene = job.march.scene;
-  const Place first = place_beside(scene.layout, shown.place, -aside, 0);
-  return hn::And(shown.valid,
-                 likeness<kOrthographic>(scene, shown, first.index, -aside, 0) == set(0));
+  const Place other = place_beside(scene.layout, shown.place, -aside, 0);
+  const V like = likeness<kOrthographic>(scene, shown, other.index, -aside, 0);
+  return hn::AndNot(hn::And(lit, like > set(0)), shown.valid);
 }
 
 HWY_INLINE V way_in_solid(const SourceJob& job, const MarchReceiver& shown) {
@@ -173,12 +174,16 @@ void source(const SourceJob& job, const Window& part) {
     for_each_vector(scene, block.part,
                     [&](const Place& place) HWY_ATTR { sums.clear(block.first_of(place)); });
     for (const PointsOfSource& points : job.points) {
+      const bool is_first = &points == &job.points.front();
       occluders.clear();
-      for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+      const auto ask = [&](const Place& place) HWY_ATTR {
         const MarchReceiver shown = load_receiver(scene, place);
-        const int i = block.first_of(place);
-        const M own = has_own_rays<kOrthographic>(job, shown);
-        sums.own.set_at(i, hn::IfThenElseZero(own, set(1)));
+        const int i = block.first_of(place), other = i - pixels_aside(job, place) * kLanes;
+        if (is_first) {
+          const M own = has_own_rays<kOrthographic>(job, shown, rays.light(other) > set(0));
+          sums.own.set_at(i, hn::IfThenElseZero(own, set(1)));
+        }
+        const M own = sums.own(i) > set(0);
         rays.light.set_at(i, set(0));
         if (!any(own)) return;
         const MarchReceiver lit = lit_point(job, shown);
@@ -191,7 +196,14 @@ void source(const SourceJob& job, const Window& part) {
         rays.length.set_at(i, hn::Max(to.distance - way_in_solid(job, shown), set(0)));
         const MarchReceiver p = start_of_ray(job, shown, to.to);
         occluders.ask(i, p, ray_of<kOrthographic>(scene, p, rays, i));
-      });
+      };
+      // Those first whose rays count for others.
+      for (const bool first : {true, false}) {
+        if (!first && !job.unseen_of) break;
+        for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+          if ((pixels_aside(job, place) == 0) == first) ask(place);
+        });
+      }
       occluders.run(job.together);
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
         const int i = block.first_of(place);
@@ -208,9 +220,9 @@ void source(const SourceJob& job, const Window& part) {
       const std::ptrdiff_t i = place.index;
       const int from = block.first_of(place);
       if (job.unseen_of) {
-        const int first = from - pixels_to_first(job, place) * kLanes;
+        const int other = from - pixels_aside(job, place) * kLanes;
         const M own = sums.own(from) > set(0);
-        return store(hn::IfThenElse(own, sums.arrives(from), sums.arrives(first)),
+        return store(hn::IfThenElse(own, sums.arrives(from), sums.arrives(other)),
                      job.found->unseen, i);
       }
       const V zero = set(0), weight = load(sums.weight + from),
