@@ -81,11 +81,10 @@ void send_light(const BounceInputs& inputs, const LightGroup& light, const Windo
   for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
 }
 
-/// The share of the light from afar in all light is told from one row of the display window in so
-/// many.
+/// One row of the display window in so many tells which share of the sent light comes from afar.
 constexpr int kRowsApart = 8;
 
-/// The same of these rows, in the first pass.
+/// What pixels of these rows send in the first pass.
 InterleavedVectors sent_by_rows(const BounceInputs& inputs, const LightGroup& light,
                                 const Window& part) {
   InterleavedVectors sent = inputs.raster.make_color();
