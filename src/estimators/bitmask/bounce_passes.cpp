@@ -81,16 +81,16 @@ void send_light(const BounceInputs& inputs, const LightGroup& light, const Windo
   for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
 }
 
-/// One row of the display window in so many tells which share of the sent light comes from afar.
-constexpr int kRowsApart = 8;
+/// So many rows of the display window, or all, tell which share of the sent light comes from afar.
+constexpr int kRows = 128;
 
-/// What pixels of these rows send in the first pass.
+/// What pixels of a part send in the first pass, in one row of the display window in so many.
 InterleavedVectors sent_by_rows(const BounceInputs& inputs, const LightGroup& light,
-                                const Window& part) {
+                                const Window& part, int rows_apart) {
   InterleavedVectors sent = inputs.raster.make_color();
   for_each_row(part.height(), [&](int row) {
     const int y = part.y0 + row;
-    if ((y + inputs.march.scene.first_y) % kRowsApart == 0)
+    if ((y + inputs.march.scene.first_y) % rows_apart == 0)
       send_light(inputs, light, {part.x0, y, part.x1, y + 1}, nullptr, sent);
   });
   return sent;
@@ -188,10 +188,10 @@ class BouncePasses {
       if (afar.source_indices.size() < light.light.source_indices.size()) {
         // Holes send what pixels of other rows send.
         const bool has_holes = bool(scene_.caster_surfaces);
-        const int apart = has_holes ? 1 : kRowsApart;
+        const int apart = has_holes ? 1 : std::max(scene_.geometry.display.height() / kRows, 1);
         const glm::vec3 all = mean(sent, apart),
                         part = mean(has_holes ? ssdo::sent_light(in_, afar, pass.lit, nullptr)
-                                              : sent_by_rows(in_, afar, pass.lit),
+                                              : sent_by_rows(in_, afar, pass.lit, apart),
                                     apart);
         for (int c = 0; c < 3; ++c) light.from_afar[c] = all[c] > 0 ? part[c] / all[c] : 0;
       }

@@ -139,14 +139,14 @@ HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const MarchReceiver&
   return p;
 }
 
-/// Of so many pixels beside each other, the third has rays from its unseen side, and those of its
-/// surface take what these find, if it is lit: what unseen sides send is a mean over 4 x 4 pixels
-/// anyhow (senders.cpp).
-constexpr int kShareUnseen = 4;
+/// Of two pixels beside each other, the second has rays from its unseen side. The first takes what
+/// they find, if both show one surface and the second is lit: what unseen sides send is a mean over
+/// 4 x 4 pixels anyhow (senders.cpp). Of four, small pictures notice.
+constexpr int kShareUnseen = 2;
 
 /// From the pixel whose rays count.
 HWY_INLINE int pixels_aside(const SourceJob& job, const Place& place) {
-  return job.unseen_of ? place.column_phase % kShareUnseen - kShareUnseen / 2 : 0;
+  return job.unseen_of ? place.column_phase % kShareUnseen - (kShareUnseen - 1) : 0;
 }
 
 /// Whether pixels have rays of their own. `lit`: whether the pixel whose rays count has rays.
