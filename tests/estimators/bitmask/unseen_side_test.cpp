@@ -251,35 +251,5 @@ TEST(UnseenSide, OfWhatIsHiddenDoesNotSendTheLightOfItsFront) {
   EXPECT_LT(behind, 0.01 * before);
 }
 
-/// The bounce of a lamp between a floor and bars over it, seen from above, on what shows of the
-/// floor. The bars are one pixel wide and two apart, `shift` pixels to the right.
-double bounce_behind_bars(int shift) {
-  const auto bars = cut(plane({0, 0, 0.5}, {0, 0, 1}), [=](const glm::dvec3& p) {
-    return (int(std::floor(p.x * 48)) + 96 - shift) % 2 == 0;
-  });
-  const Surface all = all_of({plane({}, {0, 0, 1}), bars});
-  const Camera camera = tilted(camera_from_ortho_width(4, kWindow, 1), 0);
-  const Geometry geometry = geometry_of(all, camera, kWindow);
-  Lamp lamp;
-  lamp.position = {0, 0, 0.25}, lamp.radius = 0.05, lamp.intensity = 400;
-  Scene scene = scene_of(geometry, Environment::constant(glm::vec3(0)), kAlbedo);
-  scene.solids = constant_thickness(geometry, 0.01f);
-  scene.light.sources = {make_source(lamp, {camera.rotation, camera.origin}, 0.005)};
-  const Products out = lit(scene);
-  double sum = 0;
-  for (int y = 64; y < 80; ++y)
-    for (int x = 88; x < 104; ++x)
-      if (point_at(all, camera, kWindow, x, y).position.z < 0.01) sum += double(out.bounce(x, y).x);
-  return sum / 128;
-}
-
-/// Pairs of pixels share the rays from unseen sides, but not those of a floor far behind a bar.
-TEST(UnseenSide, OfEachBarHasItsOwnRays) {
-  const double shared = bounce_behind_bars(1), own = bounce_behind_bars(0);
-  fmt::print("bounce behind bars {:.4f} and {:.4f}\n", shared, own);
-  EXPECT_GT(shared, 0.01);
-  EXPECT_NEAR(own, shared, 0.1 * shared);
-}
-
 }  // namespace
 }  // namespace ssdo::test::unseen_side_test

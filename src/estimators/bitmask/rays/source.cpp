@@ -82,7 +82,6 @@ struct BlockSums {
   alignas(64) float weight[Block::kPixels];    ///< the light of the rays
   alignas(64) float share[Block::kPixels];     ///< the light of the rays that arrive
   alignas(64) float width_px[Block::kPixels];  ///< of penumbras, weighted by the blocked light
-  BlockValues own;                             ///< 1; 0: the rays of another pixel count
 
   HWY_INLINE void clear(int i) {
     for (float* sum : {weight, share, width_px}) store(set(0), sum + i);
@@ -92,12 +91,6 @@ struct BlockSums {
     store(load(weight + i) + light, weight + i);
     store(hn::MulAdd(light, arrives, load(share + i)), share + i);
     store(hn::MulAdd(lost, penumbra_px, load(width_px + i)), width_px + i);
-  }
-
-  /// The share of the light that arrives; 0 where there are no rays.
-  HWY_INLINE V arrives(int i) const {
-    const V all = load(weight + i);
-    return hn::IfThenElseZero(all > set(0), load(share + i) / all);
   }
 };
 
@@ -139,27 +132,6 @@ HWY_INLINE MarchReceiver start_of_ray(const SourceJob& job, const MarchReceiver&
   return p;
 }
 
-/// Of two pixels beside each other, the second has rays from its unseen side. The first takes what
-/// they find, if both show one surface and the second is lit: what unseen sides send is a mean over
-/// 4 x 4 pixels anyhow (senders.cpp). Of four, small pictures notice.
-constexpr int kShareUnseen = 2;
-
-/// From the pixel whose rays count.
-HWY_INLINE int pixels_aside(const SourceJob& job, const Place& place) {
-  return job.unseen_of ? place.column_phase % kShareUnseen - (kShareUnseen - 1) : 0;
-}
-
-/// Whether pixels have rays of their own. `lit`: whether the pixel whose rays count has rays.
-template <bool kOrthographic>
-HWY_INLINE M has_own_rays(const SourceJob& job, const MarchReceiver& shown, M lit) {
-  const int aside = pixels_aside(job, shown.place);
-  if (aside == 0) return shown.valid;
-  const MarchScene& scene = job.march.scene;
-  const Place other = place_beside(scene.layout, shown.place, -aside, 0);
-  const V like = likeness<kOrthographic>(scene, shown, other.index, -aside, 0);
-  return hn::AndNot(hn::And(lit, like > set(0)), shown.valid);
-}
-
 HWY_INLINE V way_in_solid(const SourceJob& job, const MarchReceiver& shown) {
   return job.unseen_of ? unseen_side(*job.unseen_of, shown).clear : set(0);
 }
@@ -174,36 +146,20 @@ void source(const SourceJob& job, const Window& part) {
     for_each_vector(scene, block.part,
                     [&](const Place& place) HWY_ATTR { sums.clear(block.first_of(place)); });
     for (const PointsOfSource& points : job.points) {
-      const bool is_first = &points == &job.points.front();
       occluders.clear();
-      const auto ask = [&](const Place& place) HWY_ATTR {
-        const MarchReceiver shown = load_receiver(scene, place);
-        const int i = block.first_of(place), other = i - pixels_aside(job, place) * kLanes;
-        if (is_first) {
-          const M own = has_own_rays<kOrthographic>(job, shown, rays.light(other) > set(0));
-          sums.own.set_at(i, hn::IfThenElseZero(own, set(1)));
-        }
-        const M own = sums.own(i) > set(0);
-        rays.light.set_at(i, set(0));
-        if (!any(own)) return;
-        const MarchReceiver lit = lit_point(job, shown);
+      for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
+        const MarchReceiver shown = load_receiver(scene, place), lit = lit_point(job, shown);
+        const int i = block.first_of(place);
         const SourcePoints to = points_above(job, points, lit);
         const V light = to.weight * dot(lit.normal, to.to);
-        const M is_lit = hn::And(hn::And(lit.valid, own), light > set(0));
+        const M is_lit = hn::And(lit.valid, light > set(0));
         rays.light.set_at(i, hn::IfThenElseZero(is_lit, light));
         if (!any(is_lit)) return;
         rays.to.set_at(i, to.to);
         rays.length.set_at(i, hn::Max(to.distance - way_in_solid(job, shown), set(0)));
         const MarchReceiver p = start_of_ray(job, shown, to.to);
         occluders.ask(i, p, ray_of<kOrthographic>(scene, p, rays, i));
-      };
-      // Those first whose rays count for others.
-      for (const bool first : {true, false}) {
-        if (!first && !job.unseen_of) break;
-        for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
-          if ((pixels_aside(job, place) == 0) == first) ask(place);
-        });
-      }
+      });
       occluders.run(job.together);
       for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
         const int i = block.first_of(place);
@@ -211,24 +167,19 @@ void source(const SourceJob& job, const Window& part) {
         const MarchReceiver p = start_of_ray(job, load_receiver(scene, place), rays.to(i));
         const Ray ray = ray_of<kOrthographic>(scene, p, rays, i);
         const RayVisibility a = occluders.visibility(i, p, ray, pass_of(job, place));
-        const V penumbra =
-            job.unseen_of ? set(0) : penumbra_px<kOrthographic>(job, p, a.blocked_at, ray.length);
-        sums.add(i, rays.light(i), a.share, penumbra);
+        sums.add(i, rays.light(i), a.share,
+                 penumbra_px<kOrthographic>(job, p, a.blocked_at, ray.length));
       });
     }
     for_each_vector(scene, block.part, [&](const Place& place) HWY_ATTR {
       const std::ptrdiff_t i = place.index;
       const int from = block.first_of(place);
-      if (job.unseen_of) {
-        const int other = from - pixels_aside(job, place) * kLanes;
-        const M own = sums.own(from) > set(0);
-        return store(hn::IfThenElse(own, sums.arrives(from), sums.arrives(other)),
-                     job.found->unseen, i);
-      }
-      const V zero = set(0), weight = load(sums.weight + from),
-              blocked = weight - load(sums.share + from),
+      const V zero = set(0), weight = load(sums.weight + from), arrives = load(sums.share + from),
+              blocked = weight - arrives,
               widths = load(sums.width_px + from) * set(1 / kPenumbraUnit);
-      store(sums.arrives(from), job.found->share, i);
+      const V share = hn::IfThenElseZero(weight > zero, arrives / weight);
+      if (job.unseen_of) return store(share, job.found->unseen, i);
+      store(share, job.found->share, i);
       store(weight / set(float(job.points.size())), job.found->weight, i);
       store(hn::IfThenElseZero(blocked > zero, widths / blocked), job.found->width, i);
     });
