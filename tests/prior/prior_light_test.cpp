@@ -24,15 +24,15 @@ namespace {
 const Window kDisplay{0, 0, 240, 120};
 
 /// A floor, walls on the left and behind, with sky above them, and a ball.
-Scene room_in(const Environment& light, float albedo = 0.6f) {
+Scene room_in(const Environment& light, float albedo = 0.6f, const Window& display = kDisplay) {
   const auto wall = [](const glm::dvec3& at, const glm::dvec3& normal) {
     return cut(plane(at, normal), [](const glm::dvec3& p) { return p.z < 2.5; });
   };
   const Surface room = all_of({plane({0, 0, 0}, {0, 0, 1}), wall({-3, 0, 0}, {1, 0, 0}),
                                wall({0, 6, 0}, {0, -1, 0}), sphere({0.5, 1, 0.7}, 0.7)});
   const Camera camera =
-      look_at(camera_from_fov(70, kDisplay, 1), {0, -5, 1.6}, {0, 1, 0.9}, {0, 0, 1});
-  Geometry geometry = geometry_of(room, camera, kDisplay);
+      look_at(camera_from_fov(70, display, 1), {0, -5, 1.6}, {0, 1, 0.9}, {0, 0, 1});
+  Geometry geometry = geometry_of(room, camera, display);
   geometry.median_depth = 6;
   Scene scene = scene_of(std::move(geometry), light, albedo);
   scene.solids = guess_solids(scene.geometry);
@@ -243,15 +243,18 @@ TEST(PriorLight, OfALampIsNotSentByWhatIsNotShown) {
   EXPECT_NE(found.ao.pixels, rules.ao.pixels);
 }
 
-/// Beside a lamp, the light from afar is told from some rows of the frame.
+/// Beside a lamp, the light from afar is told from one row in four of a frame of this height.
 TEST(PriorLight, FromAfarIsSentByWhatIsNotShownAlsoBesideALamp) {
   const ProductSet asked{.ao = true, .bounce = true};
-  Scene scene = room_in(Environment::constant(glm::vec3(0.5f, 1, 2)));
+  const auto room_under = [](const glm::vec3& sky) {
+    return room_in(Environment::constant(sky), 0.6f, {0, 0, 128, 512});
+  };
+  Scene scene = room_under({0.5f, 1, 2});
   const Plane<glm::vec3> of_sky = find(scene, asked).products.bounce;
   const glm::dvec3 at = scene.geometry.camera.to_camera({0.5, 0, 2});
   scene.light.sources.push_back(std::make_shared<PointSource>(glm::vec3(at)));
   const Plane<glm::vec3> of_both = find(scene, asked).products.bounce;
-  scene.light = room_in(Environment::constant(glm::vec3(0))).light;
+  scene.light = room_under(glm::vec3(0)).light;
   scene.light.sources.push_back(std::make_shared<PointSource>(glm::vec3(at)));
   const Plane<glm::vec3> of_lamp = find(scene, asked).products.bounce;
   glm::dvec3 sum(0), more(0);

@@ -81,7 +81,8 @@ void send_light(const BounceInputs& inputs, const LightGroup& light, const Windo
   for_each_band_of(part, [&](const Window& band) { find_senders(senders, band); }, {});
 }
 
-/// So many rows of the display window, or all, tell which share of the sent light comes from afar.
+/// At least so many rows of the display window, or all that it has, tell which share of the sent
+/// light comes from afar.
 constexpr int kRows = 128;
 
 /// What pixels of a part send in the first pass, in one row of the display window in so many.

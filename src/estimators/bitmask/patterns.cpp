@@ -14,8 +14,8 @@ namespace {
 /// less noise than direct light has. Measured on seven frames. The light of a lamp changes within a
 /// few pixels, and a step that passes over a small bright place gives bias, not only noise: steps
 /// count for more than slices. Error of the bounce of nine lamps, with overscan and four views,
-/// with 5 slices and 2/3, 1 and 3/2 times the steps: 0.40, 0.37 and 0.35; with 4 and 3 slices and
-/// 3/2 times the steps: 0.36 and 0.36.
+/// with 5 slices and 2/3, 1 and 3/2 times the steps: 0.398, 0.365 and 0.352; with 4 and 3 slices
+/// and 3/2 times the steps: 0.357 and 0.364.
 constexpr int bounce_steps(int steps, bool has_lamps) {
   return has_lamps ? 3 * steps / 2 : (2 * steps + 2) / 3;
 }
